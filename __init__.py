@@ -1,0 +1,46 @@
+"""Inverse kinematics of limbs, spines and robot arms with plug-in strategies."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from limbik.core.chain import Chain as Chain
+    from limbik.core.chain import Joint as Joint
+    from limbik.core.errors import LimbikError as LimbikError
+    from limbik.core.hooks import hookimpl as hookimpl
+    from limbik.core.registry import Registry as Registry
+    from limbik.core.settings import Settings as Settings
+    from limbik.core.solution import Continuity as Continuity
+    from limbik.core.solution import Solution as Solution
+    from limbik.core.solution import Status as Status
+    from limbik.core.solver import Solver as Solver
+    from limbik.core.strategy import Strategy as Strategy
+
+__version__ = "0.1.0"
+
+# Public names load on first use, so that `import limbik` stays light. The imports are absolute
+# on purpose: pytest imports this file once more under the name of the checkout's folder.
+_PUBLIC = {
+    "Chain": "limbik.core.chain",
+    "Continuity": "limbik.core.solution",
+    "Joint": "limbik.core.chain",
+    "LimbikError": "limbik.core.errors",
+    "Registry": "limbik.core.registry",
+    "Settings": "limbik.core.settings",
+    "Solution": "limbik.core.solution",
+    "Solver": "limbik.core.solver",
+    "Status": "limbik.core.solution",
+    "Strategy": "limbik.core.strategy",
+    "hookimpl": "limbik.core.hooks",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name on first use."""
+    if name in _PUBLIC:
+        return getattr(import_module(_PUBLIC[name]), name)
+    raise AttributeError(f"module 'limbik' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_PUBLIC])

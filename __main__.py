@@ -1,0 +1,5 @@
+"""`python -m limbik`."""
+
+from limbik.cli import main
+
+main()

@@ -1,0 +1,1 @@
+"""The minimum every solve needs: chain, stages, hooks, registry, scenes."""
