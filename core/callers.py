@@ -1,0 +1,84 @@
+"""Call a strategy by its address, from compiled code as from Python.
+
+The arguments are those of the slot (`limbik.core.slots`), with the strategy's parameters as the
+flat array `limbik.core.strategy.flatten` makes. A strategy that raises stops nothing: what it had
+to write is filled with NaN, which the solve finds and reports.
+"""
+
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from limbik.core.jit import invoker, kernel
+from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, INITIAL_BEND, ROOT_CONTROL
+
+Array = NDArray[np.float64]
+
+_initial_bend = invoker(INITIAL_BEND)
+_bend_vector = invoker(BEND_VECTOR)
+_root_control = invoker(ROOT_CONTROL)
+_bank_suppression = invoker(BANK_SUPPRESSION)
+
+
+@kernel
+def call_initial_bend(
+    address: int,
+    lengths: Array,
+    reach_ratio: float,
+    weights: Array,
+    params_array: Array,
+    angles: Array,
+) -> None:
+    """Let an initial-bend method write `angles` (m,) [rad]."""
+    if not _initial_bend(address, (lengths, reach_ratio, weights, params_array, angles)):
+        angles[:] = nan
+
+
+@kernel
+def call_bend_vector(
+    address: int,
+    frame: Array,
+    aim: Array,
+    end_offset: Array,
+    to_world: Array,
+    bank: float,
+    previous: Array,
+    params_array: Array,
+    out: Array,
+) -> None:
+    """Let a bend-vector mode write `out` (3,), IK space."""
+    arguments = (frame, aim, end_offset, to_world, bank, previous, params_array, out)
+    if not _bend_vector(address, arguments):
+        out[:] = nan
+
+
+@kernel
+def call_root_control(
+    address: int,
+    root: int,
+    has_previous: int,
+    previous: Array,
+    params_array: Array,
+    low: Array,
+    high: Array,
+) -> None:
+    """Let a root control narrow `low` and `high` (n, 3) [rad]."""
+    if not _root_control(address, (root, has_previous, previous, params_array, low, high)):
+        low[:] = nan
+        high[:] = nan
+
+
+@kernel
+def call_bank_suppression(
+    address: int,
+    target: Array,
+    current: Array,
+    pitch: float,
+    in_ccd: int,
+    params_array: Array,
+    delta: Array,
+) -> None:
+    """Let a bank suppression change `delta` (3,) [rad]."""
+    if not _bank_suppression(address, (target, current, pitch, in_ccd, params_array, delta)):
+        delta[:] = nan

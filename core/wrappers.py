@@ -1,0 +1,58 @@
+"""How native code enters a strategy: one wrapper a slot, of fixed signature.
+
+These are templates. Before one is compiled, its two global names are bound to a strategy's kernel
+and to a function that makes the strategy's parameters from their flat array.
+"""
+# ruff: noqa: F821 (the two names get their values in the copies that are compiled)
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+kernel: Callable[..., None]
+rebuild: Callable[[Array], Any]
+
+
+def initial_bend(
+    lengths: Array, reach_ratio: float, weights: Array, params: Array, angles: Array
+) -> None:
+    """Enter an initial-bend method."""
+    kernel(lengths, reach_ratio, weights, rebuild(params), angles)
+
+
+def bend_vector(
+    frame: Array,
+    aim: Array,
+    end_offset: Array,
+    to_world: Array,
+    bank: float,
+    previous: Array,
+    params: Array,
+    out: Array,
+) -> None:
+    """Enter a bend-vector mode."""
+    kernel(frame, aim, end_offset, to_world, bank, previous, rebuild(params), out)
+
+
+def root_control(
+    root: int, has_previous: int, previous: Array, params: Array, low: Array, high: Array
+) -> None:
+    """Enter a root control."""
+    kernel(root, has_previous, previous, rebuild(params), low, high)
+
+
+def bank_suppression(
+    target: Array, current: Array, pitch: float, in_ccd: int, params: Array, delta: Array
+) -> None:
+    """Enter a bank suppression."""
+    kernel(target, current, pitch, in_ccd, rebuild(params), delta)
+
+
+TEMPLATES: dict[str, Any] = {
+    template.__name__: template
+    for template in (initial_bend, bend_vector, root_control, bank_suppression)
+}
