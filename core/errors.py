@@ -14,9 +14,13 @@ LimbikError
 This module imports nothing but the standard library, so every other module may import it.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
+
+MOST_FAULTS = 20
+"""How many faults one error shows: more are no help, and the first ones often cause the rest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,3 +155,38 @@ class PluginError(LimbikError):
             if name
         ]
         return ": ".join([", ".join(parts), self.message] if parts else [self.message])
+
+
+def key_text(path: Sequence[str | int]) -> str:
+    """Write a place inside an input the way it is read, such as `chain.joints[1].offset[2]`.
+
+    Args:
+        path: Keys of mappings and indices of lists, outermost first.
+    """
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        elif re.fullmatch(r"[\w-]{1,60}", part):
+            text += f".{part}" if text else part
+        else:
+            shown = part if len(part) <= 40 else f"{part[:37]}..."
+            text += f"[{shown!r}]"
+    return text
+
+
+def shortlist(faults: Iterable[Fault]) -> list[Fault]:
+    """Sort faults by place and keep at most `MOST_FAULTS`.
+
+    Unknown keys stay in the list before others do, because a mistyped key causes further faults.
+    When some are left out, the last entry says how many.
+    """
+    ranked = sorted(faults, key=lambda f: (f.code != "unknown-key", f.line, f.column))
+    kept = ranked if len(ranked) <= MOST_FAULTS else ranked[: MOST_FAULTS - 1]
+    kept = sorted(kept, key=lambda f: (f.line, f.code != "unknown-key", f.column))
+    left_out = len(ranked) - len(kept)
+    if left_out:
+        last = kept[-1]
+        message = f"{left_out} more faults are not shown"
+        kept.append(Fault("more", message, file=last.file, line=last.line, column=last.column))
+    return kept
