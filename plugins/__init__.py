@@ -1,1 +1,14 @@
-"""Built-in plug-ins, registered through the same hooks as those of third parties."""
+"""limbik's own plug-ins, one strategy a file; they use the same hooks as anyone's."""
+
+BUILT_IN = (
+    "limbik.plugins.initial_bend.nth_root",
+    "limbik.plugins.bend_vector.manual",
+    "limbik.plugins.bend_vector.auto",
+    "limbik.plugins.bend_vector.global_",
+    "limbik.plugins.root_control.none",
+    "limbik.plugins.root_control.suppress_flip",
+    "limbik.plugins.root_control.prefer_flip",
+    "limbik.plugins.bank_suppression.none",
+    "limbik.plugins.bank_suppression.threshold",
+)
+"""Modules the registry loads first; a new one is added here."""

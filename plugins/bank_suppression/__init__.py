@@ -1,0 +1,1 @@
+"""Bank suppressions: how a change of angles is cleaned of needless bank."""

@@ -1,0 +1,1 @@
+"""Bend-vector modes: toward which side a limb bends."""

@@ -1,0 +1,1 @@
+"""Initial-bend methods: how the bones lie before CCD starts."""

@@ -1,0 +1,1 @@
+"""Root controls: limits that hold for one solve only."""

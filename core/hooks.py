@@ -1,0 +1,155 @@
+"""The hooks by which plug-ins offer strategies.
+
+Each hook is called once, when the registry loads the plug-in, and returns strategies; it is never
+called during a solve. limbik's own strategies come through the same hooks. The example of each
+hook is a whole plug-in: a module with it, named by an entry point of the group `limbik`, is one.
+
+```toml
+[project.entry-points.limbik]
+acme = "acme_bends"
+```
+"""
+
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+import pluggy
+
+from limbik.core.strategy import Strategy
+
+PROJECT = "limbik"
+"""Name of the pluggy project and of the entry-point group."""
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+hookspec = pluggy.HookspecMarker(PROJECT)
+_mark = pluggy.HookimplMarker(PROJECT)
+
+
+def hookimpl(function: F) -> F:
+    """Mark a function of a plug-in as the implementation of the hook of the same name."""
+    return _mark(function)
+
+
+@hookspec
+def limbik_initial_bends() -> Iterable[Strategy]:
+    """Offer initial-bend methods: how the bones of a limb lie before CCD starts.
+
+    A kernel takes `(lengths, reach_ratio, weights, params, angles)`, see
+    `limbik.core.slots.INITIAL_BEND`.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        import math
+
+        import limbik
+
+
+        def zigzag(lengths, reach_ratio, weights, params, angles):
+            bend = math.acos(min(reach_ratio, 1.0))
+            for bone in range(angles.shape[0]):
+                angles[bone] = (bend if bone % 2 == 0 else -bend) * weights[bone]
+
+
+        @limbik.hookimpl
+        def limbik_initial_bends():
+            return [limbik.Strategy("zigzag", zigzag, description="Fold like a ruler.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_bend_vectors() -> Iterable[Strategy]:
+    """Offer bend-vector modes: toward which side a limb bends.
+
+    A kernel takes `(frame, aim, end_offset, to_world, bank, previous, params, out)`, see
+    `limbik.core.slots.BEND_VECTOR`.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        import limbik
+
+
+        def sideways(frame, aim, end_offset, to_world, bank, previous, params, out):
+            for axis in range(3):
+                out[axis] = frame[axis, 0]
+
+
+        @limbik.hookimpl
+        def limbik_bend_vectors():
+            return [limbik.Strategy("sideways", sideways, description="Bend along the root's X.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_root_controls() -> Iterable[Strategy]:
+    """Offer root controls: limits that hold for one solve only.
+
+    A kernel takes `(root, has_previous, previous, params, low, high)`, see
+    `limbik.core.slots.ROOT_CONTROL`. It only narrows the limits.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        from typing import Annotated, NamedTuple
+
+        from pydantic import Field
+
+        import limbik
+        from limbik.core.strategy import Degrees
+
+
+        class Cap(NamedTuple):
+            largest: Annotated[float, Field(ge=0, le=180, description="[deg]"), Degrees] = 60.0
+
+
+        def cap_bank(root, has_previous, previous, params, low, high):
+            low[root, 2] = max(low[root, 2], -params.largest)
+            high[root, 2] = min(high[root, 2], params.largest)
+
+
+        @limbik.hookimpl
+        def limbik_root_controls():
+            return [limbik.Strategy("cap-bank", cap_bank, Cap, "Keep the root's bank small.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_bank_suppressions() -> Iterable[Strategy]:
+    """Offer bank suppressions: how a joint's change of angles is cleaned of needless bank.
+
+    A kernel takes `(target, current, pitch, in_ccd, params, delta)`, see
+    `limbik.core.slots.BANK_SUPPRESSION`. It runs for each joint of each round: keep it short.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        import limbik
+
+
+        def halve(target, current, pitch, in_ccd, params, delta):
+            if in_ccd == 1:
+                delta[2] *= 0.5
+
+
+        @limbik.hookimpl
+        def limbik_bank_suppressions():
+            return [limbik.Strategy("halve", halve, description="Let half of the bank pass.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
