@@ -19,6 +19,7 @@ from pathlib import Path
 PREFIX = "native-"
 UNUSED_DAYS = 30
 _PACKAGE = Path(__file__).resolve().parent.parent
+_PACKAGE_CACHE = _PACKAGE / "core" / "__pycache__"
 
 
 def stamp(files: Iterable[Path]) -> str:
@@ -53,7 +54,7 @@ def candidates() -> Iterator[Path]:
     """Places for the cache, best first: `$LIMBIK_CACHE`, beside the package, the user's cache."""
     if chosen := os.environ.get("LIMBIK_CACHE"):
         yield Path(chosen).expanduser().absolute()
-    yield _PACKAGE / "core" / "__pycache__"
+    yield _PACKAGE_CACHE
     from platformdirs import user_cache_path
 
     yield user_cache_path("limbik")
