@@ -100,7 +100,10 @@ def refusal(kind: str, context: Mapping[str, Any], message: str, found: object) 
 def near_match(word: str, known: list[str]) -> str:
     """Give the hint `did you mean '...'?`, or nothing when no known word is near."""
     by_lower = {name.lower(): name for name in known}
-    near = get_close_matches(word.lower(), list(by_lower), 1)
+    lower = word.lower()
+    near = get_close_matches(lower, list(by_lower), 1)
+    if not near and len(lower) > 2:
+        near = [name for name in by_lower if name.startswith(lower)]
     return f"did you mean '{by_lower[near[0]]}'?" if near else ""
 
 

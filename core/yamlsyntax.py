@@ -34,6 +34,12 @@ _PLAIN_WORDS = (
     ("block mapping keys are not allowed", "a key cannot start here"),
     ("mapping keys are not allowed", "a key cannot start here"),
     ("<document start>", "the document has ended, yet more text follows"),
+    ("found unexpected ':'", "put a space after ':', or quotes round the text"),
+    (
+        "expected alphabetic or numeric",
+        "'&' and '*' start anchors and aliases, which are not allowed; quote the text",
+    ),
+    ("directive name", "'%' at the start of a line is a directive; quote the text"),
     ("indentation", "wrong indentation of a block of text"),
 )
 
