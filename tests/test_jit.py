@@ -165,10 +165,10 @@ def test_cache_folders_unused_for_a_month_are_removed_and_no_others(tmp_path: Pa
 def test_fingerprint_follows_helpers_constants_and_closures(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    before = sources.fingerprint(mixed)
-    assert before == sources.fingerprint(mixed)
+    before = sources.fingerprint(Strategy("mixed", mixed).function())
+    assert before == sources.fingerprint(Strategy("mixed", mixed).function())
     monkeypatch.setitem(globals(), "OFFSET", 2.0)
-    assert sources.fingerprint(mixed) != before
+    assert sources.fingerprint(Strategy("mixed", mixed).function()) != before
 
 
 def test_function_without_a_file_has_no_fingerprint() -> None:
