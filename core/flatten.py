@@ -1,0 +1,116 @@
+"""From chain and settings to the flat arrays the compiled solve runs on."""
+
+from math import radians
+from typing import Final
+
+import numpy as np
+
+from limbik.core.chain import SHORTEST, Chain
+from limbik.core.errors import ChainError
+from limbik.core.kernels.layout import Body as Body
+from limbik.core.kernels.layout import Options as Options
+from limbik.core.kernels.layout import Plugs as Plugs
+from limbik.core.pose import forward_kinematics
+from limbik.core.rotation import Array
+from limbik.core.settings import Settings
+
+SLOT_ORDER: Final = ("initial_bend", "bend_vector", "root_control", "bank_suppression")
+"""The slots in the order of `Plugs`."""
+
+_AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
+    "y+": (0.0, 1.0),
+    "y-": (0.0, -1.0),
+}
+
+
+def flat_body(chain: Chain, settings: Settings) -> Body:
+    """Return a chain as the arrays of a solve.
+
+    The initial pose is the rest pose pulled into the limits. Operating vectors are the joints' Z
+    axes, or in the off-axis layout their directions to the end in the initial pose (E-11K).
+    """
+    rest = np.clip(chain.rest, chain.low, chain.high)
+    operating = np.tile([0.0, 0.0, 1.0], (len(chain), 1))
+    if settings.off_axis:
+        operating = _end_directions(chain, rest)
+    return Body(
+        chain.offsets,
+        chain.frozen,
+        rest,
+        chain.low,
+        chain.high,
+        np.ascontiguousarray(operating),
+        np.concatenate([[0.0], np.cumsum(chain.lengths)]),
+        np.array(chain.base_position, np.float64),
+        chain.base_rotation,
+    )
+
+
+def _end_directions(chain: Chain, rest: Array) -> Array:
+    """Return unit vectors from each joint to the end in the rest pose, joint's frame, (n, 3)."""
+    positions, rotations = forward_kinematics(chain, rest)
+    away = np.einsum("nij,ni->nj", rotations, positions[-1] - positions)
+    length = np.linalg.norm(away, axis=1, keepdims=True)
+    return np.where(length > SHORTEST, away / np.maximum(length, SHORTEST), 0.0)
+
+
+def _reaches(chain: Chain, settings: Settings) -> tuple[float, float]:
+    """Return the lengths base→root and root→end (3D A-06).
+
+    Bone sums in the Z layout, straight distances in the initial pose in the off-axis layout.
+    """
+    root = settings.bend_reference - 1
+    if not settings.off_axis:
+        return float(chain.lengths[:root].sum()), float(chain.lengths[root:].sum())
+    positions, _ = forward_kinematics(chain, np.clip(chain.rest, chain.low, chain.high))
+    return (
+        float(np.linalg.norm(positions[root] - positions[0])),
+        float(np.linalg.norm(positions[-1] - positions[root])),
+    )
+
+
+def flat_options(chain: Chain, settings: Settings) -> Options:
+    """Return settings as the numbers of a solve: radians, flags, lengths.
+
+    Raises:
+        ChainError: The bones from the bend root on have no length.
+    """
+    base_to_root, root_to_end = _reaches(chain, settings)
+    if not root_to_end > SHORTEST:
+        name = chain.names[settings.bend_reference - 1]
+        raise ChainError("the chain has no length from the bend root to the end", name)
+    cone, held = settings.forbidden_cone, settings.held
+    axis_x, axis_y = _AXES[settings.reference_axis]
+    return Options(
+        full_fk=not settings.ik,
+        tolerance=settings.tolerance,
+        max_iterations=settings.max_iterations,
+        smoothing=settings.smoothing,
+        max_violations=settings.max_violations,
+        held_base=held.base,
+        held_end=held.end,
+        bend_held_base=held.base if held.bend_base else 0,
+        bend_held_end=held.end if held.bend_end else 0,
+        coefficient_base=settings.coefficient_base,
+        weight_min=settings.weight_range[0],
+        weight_max=settings.weight_range[1],
+        root=settings.bend_reference - 1,
+        base_to_root=base_to_root,
+        root_to_end=root_to_end,
+        axis_x=axis_x,
+        axis_y=axis_y,
+        twist=radians(settings.twist),
+        aim_twist=settings.aim_twist,
+        off_axis=settings.off_axis,
+        from_previous=settings.aim_from == "previous",
+        bank_lock=settings.bank_lock,
+        cone_axis=-1 if cone is None else "xyz".index(cone.axis[0]),
+        cone_sign=-1.0 if cone is not None and cone.axis[1] == "-" else 1.0,
+        cone_angle=0.0 if cone is None else radians(cone.half_angle),
+        cone_around=cone is not None and cone.entry == "go-around",
+        hold_bend=settings.hold_bend_vector,
+        bend_smoothing=radians(settings.bend_smoothing),
+        plain_clamp=settings.clamp == "plain",
+        fk_strength=settings.fk_strength,
+        fk_mix=settings.fk_mix,
+    )

@@ -1,0 +1,122 @@
+"""The flat arrays a 3D solve runs on: chain, options, strategies, working pose.
+
+NamedTuples of arrays and numbers cost nothing in compiled code and keep their names there.
+"""
+
+from typing import NamedTuple
+
+from limbik.core.rotation import Array
+
+
+class Body(NamedTuple):
+    """A chain of n joints."""
+
+    offsets: Array
+    """Positions in the parent's frame, (n, 3) [length]; joint 0's is from the base frame."""
+    frozen: Array
+    """Frozen rotations, (n, 3, 3)."""
+    rest: Array
+    """Initial angles inside the limits, HPB, (n, 3) [rad]."""
+    low: Array
+    """Limits, (n, 3) [rad]; -inf where free."""
+    high: Array
+    """Limits, (n, 3) [rad]; +inf where free."""
+    operating: Array
+    """Unit vectors that aim turns to the target, in each joint's frame, (n, 3)."""
+    along: Array
+    """Bone length from joint 0 to each joint along the chain, (n,) [length]."""
+    base_position: Array
+    """(3,) [length], world."""
+    base_rotation: Array
+    """Axes of the IK space in the world, (3, 3)."""
+
+
+class Options(NamedTuple):
+    """`Settings` as numbers: radians, flags."""
+
+    full_fk: bool
+    tolerance: float
+    max_iterations: int
+    smoothing: float
+    max_violations: int
+    held_base: int
+    held_end: int
+    bend_held_base: int
+    bend_held_end: int
+    coefficient_base: float
+    weight_min: float
+    weight_max: float
+    root: int
+    """Index of the bend root: the joint before the bend reference."""
+    base_to_root: float
+    """[length]"""
+    root_to_end: float
+    """[length]"""
+    axis_x: float
+    """Reference axis in the reference joint's frame; both 0 = free."""
+    axis_y: float
+    twist: float
+    aim_twist: bool
+    off_axis: bool
+    from_previous: bool
+    bank_lock: bool
+    cone_axis: int
+    """0, 1, 2 = x, y, z; -1 = no forbidden cone."""
+    cone_sign: float
+    cone_angle: float
+    cone_around: bool
+    hold_bend: bool
+    bend_smoothing: float
+    plain_clamp: bool
+    fk_strength: float
+    fk_mix: float
+
+
+class Plugs(NamedTuple):
+    """Native addresses of the chosen strategies and their parameters."""
+
+    initial_bend: int
+    bend_vector: int
+    root_control: int
+    bank_suppression: int
+    params: Array
+    """One row a slot in the order above, (4, 16)."""
+
+
+class Pose(NamedTuple):
+    """What a solve works on; allocated once, used for goal after goal."""
+
+    angles: Array
+    """HPB, (n, 3) [rad]; true for limited joints, renewed for free ones where needed."""
+    relative: Array
+    """Rotations of the angles, (n, 3, 3)."""
+    parent: Array
+    """World frames before a joint's own turn: parent world x frozen, (n, 3, 3)."""
+    world: Array
+    """World rotations, (n, 3, 3)."""
+    positions: Array
+    """World positions, (n, 3) [length]."""
+    low: Array
+    """Effective limits of this solve, (n, 3) [rad]."""
+    high: Array
+    """Effective limits of this solve, (n, 3) [rad]."""
+    free: Array
+    """Whether a joint has no limit at all now, (n,) of 0 or 1."""
+    moves: Array
+    """Whether a joint has an axis that is not fixed, (n,) of 0 or 1."""
+    violations: Array
+    """Turns in a row that asked for more than the limits, (n,) integers."""
+    bones: Array
+    """Bone lengths from the root over root-to-end length, weights, bend angles, (3, n) [-], [rad]."""
+    aim: Array
+    """Unit vector root to goal in the aim pose, IK space, (3,)."""
+    bend: Array
+    """Bend vector across the aim, IK space, (3,)."""
+    bend_world: Array
+    """Bend vector after cone and smoothing, world, (3,): what the next solve continues."""
+    directions: Array
+    """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
+    vectors: Array
+    """Scratch vectors, (24, 3): 0-11 belong to `turn`, 12-23 to the stages."""
+    matrix: Array
+    """Scratch, (3, 3)."""

@@ -1,0 +1,37 @@
+"""Forward kinematics over arrays of poses (000 §4); plain numpy, any number of leading axes."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limbik.core.chain import Chain
+from limbik.core.rotation import Array, hpb_to_matrix
+
+
+def forward_kinematics(chain: Chain, angles: ArrayLike) -> tuple[Array, Array]:
+    """Return where angles put a chain's joints.
+
+    World transform of joint i = parent world x frozen x HPB(angles of i).
+
+    Args:
+        chain: n joints.
+        angles: HPB [rad], shape (..., n, 3).
+
+    Returns:
+        World positions (..., n, 3) [length] and world rotations (..., n, 3, 3).
+
+    Raises:
+        ValueError: The last two axes are not (n, 3).
+    """
+    hpb = np.asarray(angles, np.float64)
+    if hpb.shape[-2:] != (len(chain), 3):
+        raise ValueError(f"angles must end in shape ({len(chain)}, 3), these have {hpb.shape}")
+    own = chain.frozen @ hpb_to_matrix(hpb)
+    positions = np.empty(hpb.shape)
+    rotations = np.empty((*hpb.shape, 3))
+    turned, origin = chain.base_rotation, np.asarray(chain.base_position, np.float64)
+    for joint in range(len(chain)):
+        origin = origin + turned @ chain.offsets[joint]
+        turned = turned @ own[..., joint, :, :]
+        positions[..., joint, :] = origin
+        rotations[..., joint, :, :] = turned
+    return positions, rotations

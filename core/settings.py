@@ -1,0 +1,129 @@
+"""The options of a solve, one checked model for Python and scenes (000 tables 7-4 to 7-19).
+
+Angles are in degrees, lengths in the chain's unit. The defaults are the document's (C-17).
+"""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+Axis = Literal["x+", "x-", "y+", "y-", "z+", "z-"]
+Choice = str | dict[str, Any]
+
+
+def _pair(value: Any) -> Any:
+    """Let a list from a scene stand for a tuple, which strict models refuse otherwise."""
+    return tuple(value) if isinstance(value, list) else value
+
+
+class Model(BaseModel):
+    """Strict, frozen, no unknown keys, no NaN."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Held(Model):
+    """Joints held from both ends (000 §6.1(10), table 7-5).
+
+    CCD leaves them alone; `bend_base` and `bend_end` leave them out of the initial bend too.
+    """
+
+    base: Annotated[int, Field(ge=0, description="joints held from the base")] = 0
+    end: Annotated[int, Field(ge=0, description="joints held before the end")] = 0
+    bend_base: Annotated[bool, Field(description="the base's stay out of the initial bend")] = False
+    bend_end: Annotated[bool, Field(description="the end's stay out of the initial bend")] = False
+
+
+class ForbiddenCone(Model):
+    """Directions the bend vector may not take (000 §6.3(11)(D)); the axis is of the IK space."""
+
+    axis: Axis
+    half_angle: Annotated[
+        float, Field(gt=0.0, le=90.0, description="from the axis to the rim [deg]")
+    ]
+    entry: Annotated[
+        Literal["stop", "go-around"],
+        Field(description="turn out toward the previous vector or toward the new one"),
+    ] = "stop"
+
+
+class Settings(Model):
+    """Everything a solve can be told besides chain and goal.
+
+    Raises:
+        pydantic.ValidationError: A value is out of its range or a key is unknown.
+    """
+
+    ik: Annotated[bool, Field(description="false: full FK, no solve (000 §6.1(1))")] = True
+    tolerance: Annotated[float, Field(gt=0.0, description="distance that counts as reached")] = 0.01
+    max_iterations: Annotated[
+        int, Field(ge=-2, le=100_000, description="-2 initial, -1 aim, 0 bend pose, N CCD rounds")
+    ] = 20
+    smoothing: Annotated[
+        float, Field(ge=0.1, le=1.0, description="CCD round k has strength min(k x this, 1)")
+    ] = 0.1
+    max_violations: Annotated[
+        int,
+        Field(
+            ge=0, description="rounds in a row past a limit before CCD drops a joint; 0 = no bound"
+        ),
+    ] = 0
+    held: Held = Held()
+
+    initial_bend: Choice = "nth-root"
+    bend_vector: Choice = "manual"
+    root_control: Choice = "none"
+    bank_suppression: Choice = "none"
+
+    coefficient_base: Annotated[
+        float, Field(ge=0.0, le=2.0, description="bend coefficient [-]")
+    ] = 1.0
+    weight_range: Annotated[
+        tuple[
+            Annotated[float, Field(ge=-1.0, le=1.0)],
+            Annotated[float, Field(ge=-1.0, le=1.0)],
+        ],
+        BeforeValidator(_pair),
+        Field(description="bend weight base (min, max) [-]"),
+    ] = (0.0, 0.0)
+    bend_reference: Annotated[int, Field(ge=1, description="index of the bend reference joint")] = 1
+    reference_axis: Annotated[
+        Literal["free", "x+", "x-", "y+", "y-"],
+        Field(description="axis of the reference joint turned to the bend vector"),
+    ] = "y+"
+    twist: Annotated[
+        float, Field(ge=-360.0, le=360.0, description="twist about the root's Z axis [deg]")
+    ] = 0.0
+    aim_twist: Annotated[bool, Field(description="twist the root in the aim pose too")] = False
+    off_axis: Annotated[bool, Field(description="children lie off the joints' Z axes")] = False
+    aim_from: Annotated[
+        Literal["initial", "previous"],
+        Field(description="pose the aim starts from; previous = the document's, drifts"),
+    ] = "initial"
+    bank_lock: Annotated[bool, Field(description="lock banks from the reference on")] = False
+    forbidden_cone: ForbiddenCone | None = None
+    hold_bend_vector: Annotated[
+        bool, Field(description="keep the previous bend vector (manual, global)")
+    ] = False
+    bend_smoothing: Annotated[
+        float,
+        Field(
+            ge=0.0, le=45.0, description="largest turn of the bend vector a solve [deg]; 0 = off"
+        ),
+    ] = 0.0
+    clamp: Annotated[
+        Literal["re-aim", "plain"], Field(description="what a turn past a limit does")
+    ] = "re-aim"
+    fk_strength: Annotated[
+        float, Field(ge=0.0, le=1.0, description="strength of FK offsets [-]")
+    ] = 1.0
+    fk_mix: Annotated[float, Field(ge=0.0, le=1.0, description="0 = IK, 1 = FK [-]")] = 0.0
+
+    @model_validator(mode="after")
+    def _holding_needs_a_fixed_mode(self) -> "Settings":
+        mode = self.bend_vector["use"] if isinstance(self.bend_vector, dict) else self.bend_vector
+        if self.hold_bend_vector and mode == "auto":
+            raise ValueError(
+                "hold_bend_vector goes with the modes manual and global, not with auto"
+            )
+        return self

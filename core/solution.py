@@ -1,0 +1,147 @@
+"""What a solve gives back: `Solution`, `Status`, `Trace` stages, `Continuity`."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limbik.core.chain import AXES, Chain
+from limbik.core.rotation import Array
+
+AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
+
+
+class Status(IntEnum):
+    """How a solve ended.
+
+    The kernels return these numbers; `label` is the word for people.
+    """
+
+    REACHED = 0
+    STOPPED = 1
+
+    @property
+    def label(self) -> str:
+        """The status as tables and JSON show it."""
+        return self.name.lower().replace("_", "-")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One pose of a solve's trace.
+
+    Attributes:
+        name: `initial`, `aim`, `bend`, or `round k`.
+        angles: (n, 3) HPB [rad].
+        positions: World positions of the joints, (n, 3) [length].
+    """
+
+    name: str
+    angles: Array
+    positions: Array
+
+
+class Continuity:
+    """What one solve hands to the next (000 §7.6.3); a plain value, never kept by the solver.
+
+    Attributes:
+        memory: The numbers as the kernels use them, (n + 4, 3): aim angles of the base and of the
+            bend root, bend vector, a flag, angles of the finished pose.
+    """
+
+    __slots__ = ("memory",)
+
+    def __init__(self, memory: Array) -> None:
+        self.memory: Array = memory
+
+    @classmethod
+    def from_pose(cls, angles: ArrayLike, bend_reference: int = 1) -> "Continuity":
+        """Return the continuity of a pose that no solve has made.
+
+        Args:
+            angles: (n, 3) HPB [rad].
+            bend_reference: Index of the bend reference joint.
+        """
+        pose = np.asarray(angles, np.float64)
+        memory = np.zeros((len(pose) + 4, 3))
+        memory[0] = pose[0]
+        memory[1] = pose[bend_reference - 1]
+        memory[3, 0] = 1.0
+        memory[4:] = pose
+        return cls(memory)
+
+    @property
+    def aim_base(self) -> Array:
+        """Base angles of the aim pose, HPB [rad], (3,)."""
+        return np.asarray(self.memory[0])
+
+    @property
+    def aim_root(self) -> Array:
+        """Bend root's angles of the aim pose, HPB [rad], (3,)."""
+        return np.asarray(self.memory[1])
+
+    @property
+    def bend_vector(self) -> Array:
+        """Bend vector in the world, (3,); zeros when there was none yet."""
+        return np.asarray(self.memory[2])
+
+    @property
+    def angles(self) -> Array:
+        """Angles of the finished pose, HPB [rad], (n, 3)."""
+        return np.asarray(self.memory[4:])
+
+    def copy(self) -> "Continuity":
+        """Return a copy that shares nothing with this one."""
+        return Continuity(self.memory.copy())
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The answer to one goal, or to many with a leading goal axis.
+
+    Attributes:
+        chain: The chain that was solved.
+        goal: (3,) or (m, 3) [length].
+        angles: (n, 3) HPB [rad], or (m, n, 3).
+        positions: World positions of the joints, (n, 3) [length], or (m, n, 3).
+        rotations: World rotations, (n, 3, 3), or (m, n, 3, 3).
+        iterations: CCD rounds used, or the stage (-2, -1, 0) that was asked for; (m,) for many.
+        distance: End to goal [length]; (m,) for many.
+        status: `Status`; (m,) of its numbers for many.
+        bend_vector: Unit vector in the world toward which the chain bends, (3,) or (m, 3).
+        bend_angle: Bend direction: angle about the bend root's Z from its Y axis [rad] (E-14).
+        continuity: What the next solve may be given; None for many.
+        trace: Every stage's pose, when asked for.
+    """
+
+    chain: Chain
+    goal: Array
+    angles: Array
+    positions: Array
+    rotations: Array
+    iterations: int | Array
+    distance: float | Array
+    status: Status | Array
+    bend_vector: Array
+    bend_angle: float | Array
+    continuity: Continuity | None = None
+    trace: tuple[Stage, ...] | None = None
+
+    @property
+    def reached(self) -> bool | Array:
+        """Whether the end is on the goal; (m,) for many."""
+        return self.status == Status.REACHED
+
+    def limits_touched(self) -> tuple[str, ...]:
+        """Return the joint axes that rest on an end of their range, like `elbow pitch`.
+
+        Fixed axes are left out: they always rest.
+        """
+        low, high = self.chain.low, self.chain.high
+        resting = (self.angles <= low + AT_LIMIT) | (self.angles >= high - AT_LIMIT)
+        joints, axes = np.nonzero(resting & (high - low > AT_LIMIT))
+        return tuple(
+            f"{self.chain.names[joint]} {AXES[axis]}"
+            for joint, axis in zip(joints.tolist(), axes.tolist(), strict=True)
+        )
