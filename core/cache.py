@@ -5,6 +5,7 @@ Machine code depends on every source it was made of, which numba does not see ac
 edit leads to another folder, never to old code. Nothing here imports numba.
 """
 
+import contextlib
 import os
 import shutil
 import sys
@@ -18,6 +19,7 @@ from pathlib import Path
 
 PREFIX = "native-"
 UNUSED_DAYS = 30
+MOST_FOLDERS = 64
 _PACKAGE = Path(__file__).resolve().parent.parent
 _PACKAGE_CACHE = _PACKAGE / "core" / "__pycache__"
 
@@ -89,14 +91,18 @@ def folder(name: str) -> Path | None:
 
 
 def remove_unused(place: Path, now: float | None = None) -> None:
-    """Remove folders of the cache that no run has used for `UNUSED_DAYS` days."""
+    """Remove folders of the cache that no run has used for `UNUSED_DAYS` days.
+
+    Of the others the `MOST_FOLDERS` used last stay: each edit of limbik's sources makes one more.
+    """
     oldest = (time.time() if now is None else now) - UNUSED_DAYS * 86_400
+    used = []
     for path in place.glob(f"{PREFIX}*"):
-        try:
-            if path.stat().st_mtime < oldest:
-                shutil.rmtree(path, ignore_errors=True)
-        except OSError:
-            continue
+        with contextlib.suppress(OSError):  # another process may have been faster
+            used.append((path.stat().st_mtime, path))
+    for rank, (last_use, path) in enumerate(sorted(used, reverse=True)):
+        if last_use < oldest or rank >= MOST_FOLDERS:
+            shutil.rmtree(path, ignore_errors=True)
 
 
 def is_compiled_before() -> bool:

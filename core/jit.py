@@ -134,13 +134,24 @@ def _compile(slot: Slot, strategy: Strategy) -> tuple[int, Any]:
     try:
         dispatcher.compile(signature)
         compiled = dispatcher.get_compile_result(signature)
-    except _errors.NumbaError as error:
-        reason = " ".join(str(error).split())
-        raise PluginError(
-            f"its kernel does not compile: {reason}", "", strategy.name, slot.name
-        ) from error
+    except Exception as error:  # the compiler fails in more ways than by its own errors
+        message = f"its kernel does not compile: {_reason(error)}"
+        raise PluginError(message, "", strategy.name, slot.name) from error
     address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
     return int(address), (dispatcher, compiled)
+
+
+def _reason(error: Exception) -> str:
+    """Pick what the author can use out of the compiler's report: the complaint and its place."""
+    kept: list[str] = []
+    for line in filter(None, map(str.strip, str(error).splitlines())):
+        if line.startswith('File "'):
+            return f"{' '.join(kept)} ({line.rstrip(':')})"
+        if line.startswith("During:") and kept:
+            break
+        if not line.startswith("Failed in nopython mode"):
+            kept.append(line)
+    return " ".join(kept) or type(error).__name__
 
 
 def _wrapper(slot: Slot, strategy: Strategy, unique: str) -> FunctionType:

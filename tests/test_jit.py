@@ -1,6 +1,7 @@
 """Compiled strategies are kept between runs, never stale, and safe whatever their authors do."""
 
 import os
+import re
 import subprocess
 import sys
 import textwrap
@@ -128,6 +129,14 @@ def test_kernel_that_does_not_compile_is_a_plugin_error_naming_its_plugin() -> N
 
 
 @compiled_only
+def test_compilers_report_is_cut_down_to_complaint_and_line() -> None:
+    with pytest.raises(PluginError) as caught:
+        jit.native("initial_bend", Strategy("odd-again", odd))
+    assert re.search(r"no_such_thing.*\(File .*test_jit\.py\", line \d+\)$", str(caught.value))
+    assert "During" not in str(caught.value)
+
+
+@compiled_only
 def test_arrays_of_another_layout_are_refused_not_misread() -> None:
     threshold = Registry(third_party=False).bind("bank_suppression", "threshold")
     strided = np.zeros(6)[::2]
@@ -160,6 +169,18 @@ def test_cache_folders_unused_for_a_month_are_removed_and_no_others(tmp_path: Pa
         os.utime(folder, (now, now - age * 86_400))
     cache.remove_unused(tmp_path, now)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([new.name, other.name])
+
+
+def test_only_the_cache_folders_used_last_stay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cache, "MOST_FOLDERS", 2)
+    for age in range(4):
+        folder = tmp_path / f"{cache.PREFIX}{age}"
+        folder.mkdir()
+        os.utime(folder, (1e9, 1e9 - age))
+    cache.remove_unused(tmp_path, 1e9)
+    assert {path.name for path in tmp_path.iterdir()} == {f"{cache.PREFIX}0", f"{cache.PREFIX}1"}
 
 
 def test_fingerprint_follows_helpers_constants_and_closures(
