@@ -4,7 +4,7 @@ Source: 000 §6.3(11)(G), (H), (L), §7.6; reading 3D A-35.
 """
 
 from collections.abc import Iterable
-from math import atan2, sin, sqrt
+from math import sin
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -31,9 +31,9 @@ class Threshold(NamedTuple):
     all_stages: Annotated[bool, Field(description="in the stages before CCD too")] = False
 
 
-def angle_to_z(vector: Array) -> float:
-    """Angle of a vector (3,) from the Z axis [rad]."""
-    return atan2(sqrt(vector[0] * vector[0] + vector[1] * vector[1]), vector[2])
+def is_near_z(unit: Array, rim: float) -> bool:
+    """Whether a unit vector (3,) lies in the cone about Z with this sine of its half angle."""
+    return bool(unit[2] > 0.0 and unit[0] * unit[0] + unit[1] * unit[1] < rim * rim)
 
 
 def threshold(
@@ -46,7 +46,8 @@ def threshold(
     """
     if in_ccd == 0 and not params.all_stages:
         return
-    if angle_to_z(target) < params.angle or angle_to_z(current) < params.angle:
+    rim = sin(params.angle)
+    if is_near_z(target, rim) or is_near_z(current, rim):
         dropped = delta[2]
         delta[2] = 0.0
         if params.heading_correction:

@@ -22,10 +22,12 @@ def nth_root(
     bend. A goal out of reach gives P = 0.
     """
     bones = angles.shape[0]
-    bend = acos(min(max(reach_ratio, 0.0), 1.0))
+    bend = acos(min(max(reach_ratio, 0.0), 1.0)) if bones > 1 else 0.0
+    root = 3.0 ** (1.0 / (bones - 1)) if bones > 1 else 1.0
+    power = 1.0
     for bone in range(bones):
-        share = 2.0 - 3.0 ** (bone / (bones - 1)) if bones > 1 else 0.0
-        angles[bone] = bend * share * weights[bone]
+        angles[bone] = bend * (2.0 - power) * weights[bone]
+        power *= root
 
 
 @hookimpl
