@@ -8,6 +8,7 @@ from limbik.core.kernels.layout import Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
     ZERO_LENGTH,
     ZERO_TURN,
+    copy_vector,
     cross,
     hpb_to_matrix,
     norm,
@@ -114,7 +115,7 @@ def _bend_joint(joint: int, body: Body, options: Options, plugs: Plugs, pose: Po
     wanted, world, target = pose.vectors[14], pose.vectors[15], pose.vectors[16]
     if options.off_axis:
         # Each joint's own end direction of the aim pose is turned (3D A-28).
-        world[:] = pose.directions[joint]
+        copy_vector(pose.directions[joint], world)
         cross(pose.aim, pose.bend, wanted)
         rotate(body.base_rotation, wanted, target)
         turn_about(world, target, angle, pose.vectors[17])
@@ -124,7 +125,7 @@ def _bend_joint(joint: int, body: Body, options: Options, plugs: Plugs, pose: Po
         rotate(body.base_rotation, wanted, world)
     rotate_back(pose.parent[joint], world, target)
     operating = pose.vectors[18]
-    operating[:] = body.operating[joint]
+    copy_vector(body.operating[joint], operating)
     if norm(operating) > 0.5:
         turn_joint(joint, operating, target, 1.0, False, pose, options, plugs)
 

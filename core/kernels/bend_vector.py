@@ -7,6 +7,7 @@ from limbik.core.kernels.layout import Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
     angle_between,
+    copy_vector,
     cross,
     make_perpendicular,
     norm,
@@ -44,7 +45,7 @@ def find_bend_vector(
     rotate_back(body.base_rotation, memory[2], previous)
     has_previous = norm(previous) > 0.5
     if options.hold_bend and has_previous:
-        vector[:] = previous
+        copy_vector(previous, vector)
     else:
         if not _ask_strategy(body, options, plugs, goal, previous, vector, pose):
             return False
@@ -55,7 +56,7 @@ def find_bend_vector(
     if options.cone_axis >= 0:
         _leave_cone(options, has_previous, previous, vector, pose)
     rotate(body.base_rotation, vector, pose.bend_world)
-    pose.bend[:] = vector
+    copy_vector(vector, pose.bend)
     if not make_perpendicular(pose.bend, pose.aim):
         _any_perpendicular(options.root, body, pose, pose.bend)
     return True
@@ -120,9 +121,9 @@ def _limit_turn(previous: Array, vector: Array, most: float, pose: Pose) -> None
     cross(previous, vector, axis)
     if norm(axis) < ZERO_TURN:
         # Opposite: turn in the plane across the aim, where a bend vector lives.
-        axis[:] = pose.aim
+        copy_vector(pose.aim, axis)
     normalize(axis)
-    vector[:] = previous
+    copy_vector(previous, vector)
     turn_about(vector, axis, most, pose.vectors[17])
     normalize(vector)
 
@@ -142,15 +143,15 @@ def _leave_cone(
     if angle_between(vector, axis) >= options.cone_angle:
         return
     if has_previous and not options.cone_around:
-        around[:] = previous
+        copy_vector(previous, around)
     else:
-        around[:] = vector
+        copy_vector(vector, around)
     if not make_perpendicular(around, axis):
         # Straight on the cone's axis: leave it across the aim, so that the bend stays usable.
         cross(pose.aim, axis, around)
         if not make_perpendicular(around, axis):
-            around[:] = 0.0
-            around[(options.cone_axis + 1) % 3] = 1.0
+            for i in range(3):
+                around[i] = 1.0 if i == (options.cone_axis + 1) % 3 else 0.0
     if has_previous and options.cone_around and options.bend_smoothing > 0.0:
         _limit_azimuth(options, previous, axis, around, pose)
     c, s = cos(options.cone_angle), sin(options.cone_angle)
@@ -168,7 +169,7 @@ def _limit_azimuth(
     cos(distance) = cos a cos b + sin a sin b cos f.
     """
     start, side = pose.vectors[18], pose.vectors[19]
-    start[:] = previous
+    copy_vector(previous, start)
     a, b = angle_between(previous, axis), options.cone_angle
     if not make_perpendicular(start, axis) or sin(a) * sin(b) < ZERO_TURN:
         return

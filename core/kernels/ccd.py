@@ -3,7 +3,7 @@
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import place_from
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
-from limbik.core.kernels.rotation import normalize, rotate, rotate_back
+from limbik.core.kernels.rotation import copy_vector, normalize, rotate, rotate_back
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 
@@ -30,7 +30,7 @@ def ccd_round(
     """
     n = body.offsets.shape[0]
     end = pose.vectors[12]
-    end[:] = pose.positions[n - 1]
+    copy_vector(pose.positions[n - 1], end)
     first = options.held_base
     moved = False
     for joint in range(n - 2 - options.held_end, first - 1, -1):
@@ -63,7 +63,7 @@ def _turn_end(
         reach[i] = end[i] - pose.positions[joint, i]
     rotate_back(pose.parent[joint], reach, operating)
     rotate_back(pose.relative[joint], operating, local)
-    operating[:] = local
+    copy_vector(local, operating)
     for i in range(3):
         reach[i] = goal[i] - pose.positions[joint, i]
     rotate_back(pose.parent[joint], reach, target)

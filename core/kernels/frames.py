@@ -4,9 +4,10 @@ from math import inf
 
 import numpy as np
 
-from limbik.core.jit import kernel
+from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
 from limbik.core.kernels.rotation import (
+    copy_vector,
     hpb_to_matrix,
     matrix_to_hpb,
     multiply,
@@ -18,7 +19,7 @@ from limbik.core.kernels.turn import FIXED
 from limbik.core.rotation import Array
 
 
-@kernel
+@entry
 def new_pose(n: int) -> Pose:
     """Allocate the working pose of n joints."""
     return Pose(
@@ -74,7 +75,7 @@ def renew_angles(joint: int, pose: Pose) -> None:
     found = pose.vectors[13]
     matrix_to_hpb(pose.relative[joint], pose.angles[joint, 2], found)
     nearest_form(found, pose.angles[joint])
-    pose.angles[joint] = found
+    copy_vector(found, pose.angles[joint])
     hpb_to_matrix(pose.angles[joint], pose.relative[joint])
 
 

@@ -23,6 +23,21 @@ def wrap_angle(angle: float) -> float:
 
 
 @kernel
+def copy_vector(source: Array, out: Array) -> None:
+    """Copy a vector (k,) element by element; a slice assignment would allocate."""
+    for i in range(out.shape[0]):
+        out[i] = source[i]
+
+
+@kernel
+def copy_matrix(source: Array, out: Array) -> None:
+    """Copy a matrix (k, l) element by element; a slice assignment would allocate."""
+    for row in range(out.shape[0]):
+        for column in range(out.shape[1]):
+            out[row, column] = source[row, column]
+
+
+@kernel
 def hpb_to_matrix(hpb: Array, out: Array) -> None:
     """Write RY(heading) RX(pitch) RZ(bank) of angles (3,) [rad] into out (3, 3)."""
     sh, ch = sin(hpb[0]), cos(hpb[0])

@@ -9,6 +9,8 @@ from limbik.core.kernels.ccd import ccd_round
 from limbik.core.kernels.frames import mark_limits, new_pose, place, place_from, renew_angles
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
+    copy_matrix,
+    copy_vector,
     hpb_to_matrix,
     matrix_to_hpb,
     nearest_form,
@@ -74,11 +76,12 @@ def solve_goals(
     stages = 0
     for row in range(goals.shape[0]):
         if not chained:
-            memory[:] = kept
+            copy_matrix(kept, memory)
         stages = _solve(body, options, plugs, goals[row], fk, memory, pose, numbers[row], trace)
-        angles[row] = pose.angles
-        positions[row] = pose.positions
-        rotations[row] = pose.world
+        copy_matrix(pose.angles, angles[row])
+        copy_matrix(pose.positions, positions[row])
+        for joint in range(n):
+            copy_matrix(pose.world[joint], rotations[row, joint])
     return stages
 
 
@@ -95,7 +98,7 @@ def _solve(
     trace: Array,
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
-    pose.bend_world[:] = 0.0
+    pose.bend_world.fill(0.0)
     failed = FAILED + 2
     stages = 0
     iterations = -2
@@ -122,13 +125,13 @@ def _solve(
 def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose) -> bool:
     """Set limits and angles of the initial pose; False where root control gave no number."""
     n = body.offsets.shape[0]
-    pose.low[:] = body.low
-    pose.high[:] = body.high
+    copy_matrix(body.low, pose.low)
+    copy_matrix(body.high, pose.high)
     if plugs.root_control != 0:
         has_previous = int(memory[3, 0])
         last = pose.directions
         for joint in range(n):
-            last[joint] = memory[4 + joint] if has_previous else body.rest[joint]
+            copy_vector(memory[4 + joint] if has_previous else body.rest[joint], last[joint])
         call_root_control(
             plugs.root_control,
             options.root,
@@ -146,10 +149,10 @@ def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pos
             pose.low[joint, i] = min(max(low, body.low[joint, i]), body.high[joint, i])
             pose.high[joint, i] = min(max(high, body.low[joint, i]), body.high[joint, i])
     mark_limits(pose)
-    pose.angles[:] = body.rest
+    copy_matrix(body.rest, pose.angles)
     if options.from_previous and options.max_iterations > -2 and memory[3, 0] > 0.0:
-        pose.angles[0] = memory[0]
-        pose.angles[options.root] = memory[1]
+        copy_vector(memory[0], pose.angles[0])
+        copy_vector(memory[1], pose.angles[options.root])
     for joint in range(n):
         for i in range(3):
             pose.angles[joint, i] = min(
@@ -170,11 +173,11 @@ def _aim_stage(
     distance = _aim_pose(body, options, plugs, goal, pose)
     renew_angles(0, pose)
     renew_angles(root, pose)
-    memory[0] = pose.angles[0]
-    memory[1] = pose.angles[root]
+    copy_vector(pose.angles[0], memory[0])
+    copy_vector(pose.angles[root], memory[1])
     failed = 0
     if find_bend_vector(body, options, plugs, goal, memory, pose):
-        memory[2] = pose.bend_world
+        copy_vector(pose.bend_world, memory[2])
     else:
         failed = FAILED + 1
     if options.off_axis:
@@ -231,7 +234,7 @@ def _aim_joint(
     for i in range(3):
         reach[i] = point[i] - pose.positions[joint, i]
     rotate_back(pose.parent[joint], reach, target)
-    operating[:] = body.operating[joint]
+    copy_vector(body.operating[joint], operating)
     if normalize(target) and norm(operating) > 0.5:
         turn_joint(joint, operating, target, 1.0, False, pose, options, plugs)
 
@@ -282,7 +285,7 @@ def _record(stages: int, pose: Pose, trace: Array) -> int:
         return stages
     for joint in range(pose.angles.shape[0]):
         renew_angles(joint, pose)
-    trace[stages] = pose.angles
+    copy_matrix(pose.angles, trace[stages])
     return stages + 1
 
 
@@ -293,7 +296,7 @@ def _finish_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
     near, posed = pose.vectors[14], pose.vectors[15]
     mix = 1.0 if options.full_fk else options.fk_mix
     for joint in range(n):
-        near[:] = memory[4 + joint] if memory[3, 0] > 0.0 else body.rest[joint]
+        copy_vector(memory[4 + joint] if memory[3, 0] > 0.0 else body.rest[joint], near)
         if pose.free[joint]:
             matrix_to_hpb(pose.relative[joint], near[2], posed)
             nearest_form(posed, near)
@@ -308,7 +311,7 @@ def _finish_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
     place_from(0, body, pose)
     memory[3, 0] = 1.0
     for joint in range(n):
-        memory[4 + joint] = pose.angles[joint]
+        copy_vector(pose.angles[joint], memory[4 + joint])
 
 
 @kernel

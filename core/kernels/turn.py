@@ -11,6 +11,8 @@ from limbik.core.kernels.layout import Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
     angle_between,
+    copy_matrix,
+    copy_vector,
     cross,
     hpb_to_matrix,
     matrix_to_hpb,
@@ -112,11 +114,11 @@ def _turn_limited(
         # A free joint's matrix is the truth; its angles may be old.
         matrix_to_hpb(pose.relative[joint], angles[2], asked)
         nearest_form(asked, angles)
-        angles[:] = asked
+        copy_vector(asked, angles)
     for i in range(3):
         low[i] = pose.low[joint, i]
         high[i] = pose.high[joint, i]
-    pose.matrix[:] = pose.relative[joint]
+    copy_matrix(pose.relative[joint], pose.matrix)
     turn_matrix(pose.matrix, axis, angle)
     matrix_to_hpb(pose.matrix, angles[2], wanted)
     nearest_form(wanted, angles)
@@ -185,7 +187,7 @@ def _settle(
     """Give a joint its wanted angles, or the nearest the limits allow; count violations."""
     angles, wanted = pose.angles[joint], pose.vectors[4]
     low, high, before = pose.vectors[2], pose.vectors[3], pose.vectors[8]
-    before[:] = angles
+    copy_vector(angles, before)
     exceeded = False
     violated = False
     for i in range(3):
@@ -253,8 +255,8 @@ def _swing(
 ) -> tuple[float, float]:
     """Return a, b of the cosine c + a cos x + b sin x that one axis makes of M v · aim."""
     # u: the operating vector after the axes inside this one; w: the aim before those outside it.
-    u[:] = operating
-    w[:] = aim
+    copy_vector(operating, u)
+    copy_vector(aim, w)
     if axis < 2:
         _turn_z(u, angles[2])
     if axis == 0:
