@@ -1,5 +1,190 @@
-"""The command line."""
+"""The command line: read, call, print.
+
+Results go to stdout, the rest to stderr. Exit status: 0 all goals reached, 1 some not, 2 bad
+input, 3 environment, 4 a plug-in failed, 70 a bug in limbik, 130 interrupted. What is heavy is
+imported inside the commands.
+"""
+
+import io
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from limbik import __version__
+from limbik.plugins.output.failures import reported
+from limbik.plugins.output.templates import TEMPLATES, write_template
+
+if TYPE_CHECKING:
+    from limbik.core.registry import Registry
+    from limbik.core.scene import Scene
+    from limbik.core.solution import Solution
+
+app = typer.Typer(
+    name="limbik",
+    help="Inverse kinematics of limbs, spines and robot arms, from YAML scenes.",
+    epilog="Exit status: 0 all goals reached, 1 some not, 2 bad input, 3 environment, "
+    "4 a plug-in failed, 70 a bug, 130 interrupted.",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+SceneFile = Annotated[str, typer.Argument(help="Scene file (YAML), or - for standard input.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Write one JSON object to stdout.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"limbik {__version__}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def limbik(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Inverse kinematics of limbs, spines and robot arms, from YAML scenes."""
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+@app.command()
+def solve(
+    scene: SceneFile,
+    as_json: AsJson = False,
+    csv: Annotated[Path | None, typer.Option(help="Write the results to a CSV file.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw the poses to a .png, .svg or .pdf file.")
+    ] = None,
+    trace: Annotated[
+        bool, typer.Option("--trace", help="Put every stage's pose into the JSON.")
+    ] = False,
+) -> None:
+    """Solve a scene's goals and show the angles, in degrees.
+
+    limbik solve arm.yaml
+
+    limbik solve arm.yaml --json --plot arm.png
+    """
+    with reported(as_json):
+        from limbik.core.registry import Registry
+        from limbik.core.scene import read_scene
+        from limbik.core.solving import are_met
+        from limbik.plugins.output.files import write_whole
+        from limbik.plugins.output.records import solve_record, solve_rows, to_json
+
+        registry = Registry()
+        read = read_scene(scene, registry)
+        if plot is not None:
+            from limbik.plugins.output.plot import check_plot
+
+            check_plot(plot)
+        solutions = _solve_all(read, registry, trace=trace or plot is not None)
+        if csv is not None:
+            write_whole(csv, solve_rows(read, solutions))
+        if plot is not None:
+            from limbik.plugins.output.plot import draw
+
+            write_whole(plot, draw(read, solutions, plot.suffix.lower().lstrip(".")))
+        if as_json:
+            typer.echo(to_json(solve_record(read, solutions, stages=trace)))
+        else:
+            from limbik.plugins.output.table import print_solutions
+
+            print_solutions(read, solutions)
+        if not are_met(read, solutions):
+            raise SystemExit(1)
+
+
+@app.command()
+def check(
+    scenes: Annotated[list[str], typer.Argument(help="Scene files (YAML), or -.")],
+    as_json: AsJson = False,
+) -> None:
+    """Check scenes without solving them; show every fault with its line.
+
+    limbik check arm.yaml
+
+    limbik check scenes/*.yaml --json
+    """
+    with reported(as_json):
+        from limbik.core.errors import Fault, SceneError
+        from limbik.core.registry import Registry
+        from limbik.core.scene import read_scene
+        from limbik.plugins.output.records import check_record, to_json
+
+        registry = Registry()
+        faults: list[Fault] = []
+        sound = []
+        for name in scenes:
+            try:
+                sound.append(read_scene(name, registry))
+            except SceneError as error:
+                faults += error.faults
+        for read in sound if not as_json else ():
+            counts = f"{len(read.chain)} joints, {len(read.goals)} goals"
+            typer.echo(f"{read.document.name}: ok, {counts}")
+        if faults:
+            raise SceneError(faults)
+        if as_json:
+            typer.echo(to_json(check_record(sound)))
+
+
+@app.command()
+def init(
+    name: Annotated[Path, typer.Argument(help="File to write; .yaml is added if missing.")],
+    template: Annotated[str, typer.Option(help=f"One of {', '.join(TEMPLATES)}.")] = "arm",
+) -> None:
+    """Write a commented scene that runs; an existing file is never overwritten.
+
+    limbik init my-arm
+
+    limbik init walk.yaml --template leg
+    """
+    with reported():
+        path = write_template(name, template)
+        typer.echo(f"wrote {path}; try: limbik solve {path}")
+
+
+@app.command()
+def plugins(as_json: AsJson = False) -> None:
+    """List plug-ins and every strategy with parameters, defaults, ranges and units.
+
+    limbik plugins
+
+    limbik plugins --json
+    """
+    with reported(as_json):
+        from limbik.core.registry import Registry
+        from limbik.plugins.output.listing import plugin_record
+        from limbik.plugins.output.records import to_json
+
+        record = plugin_record(Registry())
+        if as_json:
+            typer.echo(to_json(record))
+        else:
+            from limbik.plugins.output.table import print_plugins
+
+            print_plugins(record)
+
+
+def _solve_all(scene: "Scene", registry: "Registry", trace: bool) -> list["Solution"]:
+    from limbik.core.jit import is_compiled_before
+    from limbik.core.solving import solve_scene
+
+    if not is_compiled_before():
+        typer.echo("limbik: compiling machine code, once for this version ...", err=True)
+    return solve_scene(scene, registry, trace)
 
 
 def main() -> None:
     """Run the command line."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a terminal that lacks a character gets a `?`
+            stream.reconfigure(errors="replace")
+    app()

@@ -1,0 +1,254 @@
+"""Read a scene: a YAML file becomes a chain, settings and goals, or a list of faults.
+
+```yaml
+limbik: 1                      # version of the format
+chain:
+  base: {position: [0, 0, 0], rotation: [0, 0, 0]}    # optional
+  joints:                      # base first; the last one is the end
+    - {name: shoulder, heading: [-130, 60], pitch: [-85, 85], bank: [-90, 90]}
+    - {name: elbow, offset: [0, 0, 30], heading: 0, pitch: [0, 145], bank: [-80, 80]}
+    - {name: wrist, offset: [0, 0, 26]}
+options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, keys of Settings
+fk: {elbow: [0, 15, 0]}        # optional FK offsets
+follow: false                  # optional: solve the goals as a path
+goals:                         # a list, or {csv: goals.csv}
+  - {name: mouth, position: [1, 2, 3]}
+```
+
+All faults of a file are found at once, each with line and column. Nothing here imports numba.
+"""
+
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from limbik.core.chain import MAX_JOINTS, Chain, Joint
+from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
+from limbik.core.goals import read_goals
+from limbik.core.registry import Registry
+from limbik.core.rotation import Array
+from limbik.core.scenemodel import CsvModel, JointModel, SceneModel
+from limbik.core.settings import Settings
+from limbik.core.slots import SLOTS
+from limbik.core.validation import validation_faults
+from limbik.core.wording import near_match
+from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
+from limbik.core.yamltext import MOST_BYTES
+
+STDIN = "-"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """A scene that can be solved.
+
+    Attributes:
+        name: Name of the file without folder and ending.
+        chain: The chain.
+        settings: The options, angles in degrees.
+        fk_offsets: FK offsets, HPB [rad], (n, 3); zeros where none are given.
+        goal_names: m names.
+        goals: World positions, (m, 3) [length].
+        follow: Whether the goals are a path, each solved from the pose before it.
+        document: The file with its positions, to point at a place later.
+    """
+
+    name: str
+    chain: Chain
+    settings: Settings
+    fk_offsets: Array
+    goal_names: tuple[str, ...]
+    goals: Array
+    follow: bool
+    document: Document
+
+
+def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
+    """Read a scene file.
+
+    Args:
+        source: Path of the file, or `-` for standard input.
+        registry: Where the strategies are looked up; a new `Registry()` if absent.
+
+    Raises:
+        SceneError: With every fault that could be found.
+        PluginError: Two plug-ins offer a strategy of one name.
+    """
+    if str(source) == STDIN:
+        document = read_yaml(sys.stdin.buffer.read(MOST_BYTES + 1), "<stdin>")
+        return scene_from(document, Path(), registry)
+    return scene_from(read_yaml_file(source), Path(source).parent, registry)
+
+
+def scene_from(document: Document, folder: Path, registry: Registry | None = None) -> Scene:
+    """Make a scene of a YAML document that has been read.
+
+    Args:
+        document: The document.
+        folder: Folder that relative paths in the scene start from.
+        registry: As for `read_scene`.
+
+    Raises:
+        SceneError: With every fault that could be found.
+    """
+    faults: list[Fault] = list(_strategy_faults(document, registry))
+    model = None
+    try:
+        model = SceneModel.model_validate(_checkable(document.content))
+    except ValidationError as error:
+        faults += validation_faults(error, document, SceneModel)
+    if model is None or faults:
+        raise SceneError(shortlist(faults))
+
+    faults += _name_faults(model, document)
+    faults += _settings_faults(model, document)
+    chain = None
+    try:
+        chain = _chain(model)
+    except ChainError as error:
+        faults += () if faults else _chain_faults(error, model, document)
+    names, goals, goal_faults = _goals(model, document, folder)
+    faults += goal_faults
+    if chain is None or faults:
+        raise SceneError(shortlist(faults))
+    offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
+    title = Path(document.name).stem.strip("<>")
+    return Scene(title, chain, model.options, offsets, names, goals, model.follow, document)
+
+
+def _choices(content: Any) -> Iterator[tuple[str, Any]]:
+    """Give the slots a scene chooses a strategy for, unchecked."""
+    options = content.get("options") if isinstance(content, dict) else None
+    if isinstance(options, dict):
+        yield from ((slot, options[slot]) for slot in SLOTS if slot in options)
+
+
+def _checkable(content: Any) -> Any:
+    """Leave out choices without a strategy's name: `_strategy_faults` has them already."""
+    nameless = [
+        slot
+        for slot, choice in _choices(content)
+        if isinstance(choice, dict) and not isinstance(choice.get("use"), str)
+    ]
+    if not nameless:
+        return content
+    options = {key: value for key, value in content["options"].items() if key not in nameless}
+    return {**content, "options": options}
+
+
+def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[Fault]:
+    """Check each chosen strategy and its parameters against the registry."""
+    for slot, choice in _choices(document.content):
+        if not isinstance(choice, str | dict):
+            continue
+        registry = registry or Registry()
+        try:
+            registry.bind(slot, choice)
+        except InputError as error:
+            for fault in error.faults:
+                path: KeyPath = ("options", slot, *_key_path(fault.key))
+                at_key = fault.code == "unknown-key"
+                yield document.fault(
+                    fault.code, fault.message, path, hint=fault.hint, at_key=at_key
+                )
+
+
+def _key_path(key: str) -> KeyPath:
+    """Take `axis[2]` apart into `("axis", 2)`."""
+    parts = re.findall(r"\[(\d+)\]|([^.\[\]]+)", key)
+    return tuple(int(index) if index else name for index, name in parts)
+
+
+def _name_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+    joints: KeyPath = ("chain", "joints")
+    if not 2 <= len(model.chain.joints) <= MAX_JOINTS:
+        count = len(model.chain.joints)
+        message = f"a chain has 2 to {MAX_JOINTS} joints, this one has {count}"
+        yield document.fault("joint-count", message, joints)
+    names = [joint.name for joint in model.chain.joints]
+    yield from _twice(names, joints, "joint", document)
+    for name in model.fk:
+        if name not in names:
+            hint = near_match(name, names) or f"known: {', '.join(names[:12])}"
+            message = f"no joint is called '{name}'"
+            yield document.fault("unknown-joint", message, ("fk", name), hint=hint, at_key=True)
+
+
+def _twice(
+    names: Sequence[str | None], path: KeyPath, what: str, document: Document
+) -> Iterator[Fault]:
+    first: dict[str | None, int] = {}
+    for index, name in enumerate(names):
+        if name is not None and name in first:
+            line, _ = document.position((*path, first[name], "name"))
+            message = f"the {what} '{name}' is given twice, first at line {line}"
+            yield document.fault("duplicate-name", message, (*path, index, "name"))
+        first.setdefault(name, index)
+
+
+def _settings_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+    """Check the options that only make sense together with the chain."""
+    count, options = len(model.chain.joints), model.options
+    if options.bend_reference >= count:
+        message = f"must be 1 to {count - 1} in a chain of {count} joints"
+        found = f"{message}, not {options.bend_reference}"
+        yield document.fault("range", found, ("options", "bend_reference"))
+    held = options.held.base + options.held.end
+    if held >= count:
+        message = f"{held} joints are held, the chain has {count} and one must stay free"
+        yield document.fault("held", message, ("options", "held"))
+
+
+def _chain(model: SceneModel) -> Chain:
+    base = model.chain.base
+    turn = tuple(np.radians(base.rotation).tolist())
+    return Chain([_joint(joint) for joint in model.chain.joints], base.position, turn)
+
+
+def _joint(joint: JointModel) -> Joint:
+    return Joint.degrees(
+        joint.name,
+        joint.offset,
+        joint.frozen,
+        joint.rest,
+        joint.heading,
+        joint.pitch,
+        joint.bank,
+    )
+
+
+def _chain_faults(error: ChainError, model: SceneModel, document: Document) -> tuple[Fault, ...]:
+    """Point what the chain itself refuses at the joint's line."""
+    path: KeyPath = ("chain", "joints")
+    for index, joint in enumerate(model.chain.joints):
+        if joint.name == error.joint:
+            path = (*path, index)
+    return tuple(document.fault(f.code, f.message, path, hint=f.hint) for f in error.faults)
+
+
+def _goals(
+    model: SceneModel, document: Document, folder: Path
+) -> tuple[tuple[str, ...], Array, list[Fault]]:
+    """Give names, positions (m, 3) and faults of the goals, from the scene or its CSV file."""
+    if isinstance(model.goals, CsvModel):
+        path = folder / model.goals.csv
+        table = read_goals(path, str(path))
+        unreadable = [fault for fault in table.faults if not fault.line]
+        for fault in unreadable:
+            table.faults[table.faults.index(fault)] = document.fault(
+                fault.code, f"{fault.file}: {fault.message}", ("goals", "csv")
+            )
+        return tuple(table.names), np.array(table.positions).reshape(-1, 3), table.faults
+    given = [goal.name for goal in model.goals]
+    faults = list(_twice(given, ("goals",), "goal", document))
+    if not model.goals:
+        message = "at least one goal is needed"
+        faults.append(document.fault("empty", message, ("goals",)))
+    names = tuple(name or str(number) for number, name in enumerate(given, 1))
+    return names, np.array([goal.position for goal in model.goals]).reshape(-1, 3), faults

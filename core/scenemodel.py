@@ -1,0 +1,121 @@
+"""The shape of a scene file: which keys there are and what each may hold.
+
+Lengths are in the scene's own unit, angles in degrees, rotations heading, pitch, bank.
+"""
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+from pydantic_core import PydanticCustomError
+
+from limbik.core.settings import Model, Settings
+from limbik.core.wording import found_words
+
+FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
+_NAME = re.compile(r"\w[\w .+-]{0,63}")
+
+
+def _listed(value: Any) -> Any:
+    """Let a list stand for a tuple, which strict models refuse otherwise."""
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _range(value: Any) -> Any:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value, value
+    if isinstance(value, list) and len(value) == 2:
+        return tuple(value)
+    message = "must be a range [minimum, maximum] or one number, not {found}"
+    raise PydanticCustomError("type", message, {"found": found_words(value)})
+
+
+def _ordered(span: tuple[float, float]) -> tuple[float, float]:
+    shown = {"low": f"{span[0]:g}", "high": f"{span[1]:g}"}
+    if span[0] > span[1]:
+        raise PydanticCustomError("range", "the minimum {low} is above the maximum {high}", shown)
+    if span[0] < -180.0 or span[1] > 180.0:
+        message = (
+            "the range [{low}, {high}] crosses ±180; turn the joint's zero with 'frozen' so that "
+            "it fits between -180 and 180"
+        )
+        raise PydanticCustomError("range", message, shown)
+    return span
+
+
+def _name(text: str) -> str:
+    if _NAME.fullmatch(text):
+        return text
+    message = "a name has 1 to 64 letters, digits, spaces or . + - _, not {found}"
+    raise PydanticCustomError("name", message, {"found": found_words(text)})
+
+
+Name = Annotated[str, AfterValidator(_name)]
+Length = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
+Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
+Place = Annotated[tuple[Length, Length, Length], BeforeValidator(_listed)]
+Turn = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_listed)]
+Range = Annotated[tuple[float, float], BeforeValidator(_range), AfterValidator(_ordered)]
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+class BaseModel(Model):
+    """Where the chain is fastened."""
+
+    position: Annotated[Place, Field(description="in the world [length]")] = NOWHERE
+    rotation: Annotated[Turn, Field(description="heading, pitch, bank [deg]")] = NOWHERE
+
+
+class JointModel(Model):
+    """One joint; its ranges are relative to its frozen rotation."""
+
+    name: Annotated[Name, Field(description="unique in the chain")]
+    offset: Annotated[Place, Field(description="in the parent's frame [length]")] = NOWHERE
+    frozen: Annotated[Turn, Field(description="rotation of the zero pose, HPB [deg]")] = NOWHERE
+    rest: Annotated[Turn, Field(description="initial angles, HPB [deg]")] = NOWHERE
+    heading: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
+    pitch: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
+    bank: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
+
+
+class ChainModel(Model):
+    """The joints, base first; the last one is the end that goes to the goals."""
+
+    base: BaseModel = BaseModel()
+    joints: list[JointModel]
+
+
+class GoalModel(Model):
+    """Where the end shall go."""
+
+    name: Annotated[Name | None, Field(description="absent = its number, from 1")] = None
+    position: Annotated[Place, Field(description="in the world [length]")]
+
+
+class CsvModel(Model):
+    """Goals in a CSV file with the columns name, x, y, z; other columns are passed over."""
+
+    csv: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+
+
+def _goals_form(value: Any) -> str:
+    return "csv" if isinstance(value, dict) else "list"
+
+
+class SceneModel(Model):
+    """A whole scene file."""
+
+    limbik: Annotated[Literal[1], Field(description="version of the format")]
+    chain: ChainModel
+    options: Settings = Settings()
+    fk: Annotated[
+        dict[str, Turn],
+        Field(default_factory=dict, description="FK offsets by joint, HPB [deg]"),
+    ]
+    follow: Annotated[
+        bool, Field(description="solve the goals as a path, each from the pose before it")
+    ] = False
+    goals: Annotated[
+        Annotated[list[GoalModel], Tag("list")] | Annotated[CsvModel, Tag("csv")],
+        Discriminator(_goals_form),
+    ]

@@ -1,0 +1,1 @@
+"""What the command line puts out: tables, records for machines, pictures, failures."""

@@ -1,0 +1,140 @@
+"""Results for machines: JSON objects and CSV rows. Angles in degrees, full precision.
+
+Keys are never taken away while `SCHEMA` stays the same number.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from limbik.core.chain import AXES
+from limbik.core.errors import Fault, InputError, LimbikError, PluginError
+from limbik.core.scene import Scene
+from limbik.core.solution import Solution
+from limbik.core.solving import are_met
+
+SCHEMA = 1
+
+
+def to_json(record: dict[str, Any]) -> str:
+    """Write a record as one JSON object; a number that is not finite becomes null."""
+    return json.dumps(_finite({"schema": SCHEMA, **record}), indent=2, allow_nan=False)
+
+
+def solve_record(
+    scene: Scene, solutions: Sequence[Solution], stages: bool = False
+) -> dict[str, Any]:
+    """Describe what became of every goal of a scene.
+
+    Args:
+        scene: The scene.
+        solutions: One solution a goal.
+        stages: Whether to put in the pose of every stage; the solutions need their traces then.
+    """
+    return {
+        "status": "ok" if are_met(scene, solutions) else "unreached",
+        "scene": scene.document.name,
+        "joints": list(scene.chain.names),
+        "goals": [
+            _goal_record(name, solution, stages)
+            for name, solution in zip(scene.goal_names, solutions, strict=True)
+        ],
+    }
+
+
+def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
+    record: dict[str, Any] = {
+        "name": name,
+        "position": solution.goal.tolist(),
+        "status": status_label(solution),
+        "reached": bool(solution.reached),
+        "distance": float(solution.distance),
+        "iterations": int(solution.iterations),
+        "angles": np.degrees(solution.angles).tolist(),
+        "positions": solution.positions.tolist(),
+        "bend_vector": solution.bend_vector.tolist(),
+        "at_limits": list(solution.limits_touched()),
+    }
+    if stages and solution.trace is not None:
+        record["stages"] = [
+            {
+                "name": stage.name,
+                "angles": np.degrees(stage.angles).tolist(),
+                "positions": stage.positions.tolist(),
+            }
+            for stage in solution.trace
+        ]
+    return record
+
+
+def check_record(scenes: Sequence[Scene]) -> dict[str, Any]:
+    """Describe scenes that were found good."""
+    return {
+        "status": "ok",
+        "scenes": [
+            {"file": s.document.name, "joints": list(s.chain.names), "goals": len(s.goals)}
+            for s in scenes
+        ],
+    }
+
+
+def failure_record(error: BaseException, status: str) -> dict[str, Any]:
+    """Describe a failure; the faults of an `InputError` keep their places."""
+    if isinstance(error, InputError):
+        return {"status": status, "errors": [_fault_record(fault) for fault in error.faults]}
+    fault = {"code": status, "message": str(error) or type(error).__name__}
+    if isinstance(error, PluginError):
+        fault |= {"plugin": error.plugin, "strategy": error.strategy, "slot": error.slot}
+    elif not isinstance(error, LimbikError):
+        fault["message"] = f"{type(error).__name__}: {error}"
+    return {"status": status, "errors": [fault]}
+
+
+def _fault_record(fault: Fault) -> dict[str, Any]:
+    return {
+        "code": fault.code,
+        "message": fault.message,
+        "key": fault.key,
+        "file": fault.file,
+        "line": fault.line,
+        "column": fault.column,
+        "hint": fault.hint,
+    }
+
+
+def solve_rows(scene: Scene, solutions: Sequence[Solution]) -> str:
+    """Write a CSV table, one line a goal; its columns name, x, y, z make it a goal file again."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(_columns(scene.chain.names))
+    for name, solution in zip(scene.goal_names, solutions, strict=True):
+        head = [name, *solution.goal.tolist(), status_label(solution)]
+        counts = [float(solution.distance), int(solution.iterations)]
+        writer.writerow([*head, *counts, *np.degrees(solution.angles).ravel().tolist()])
+    return text.getvalue()
+
+
+def _columns(names: Iterable[str]) -> list[str]:
+    angles = [f"{name} {axis}" for name in names for axis in AXES]
+    return ["name", "x", "y", "z", "status", "distance", "iterations", *angles]
+
+
+def status_label(solution: Solution) -> str:
+    """Give the status of one solution as a word."""
+    return str(getattr(solution.status, "label", solution.status))
+
+
+def _finite(value: Any) -> Any:
+    """Replace what JSON cannot hold by null."""
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_finite(inner) for inner in value]
+    return value
