@@ -152,7 +152,8 @@ def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[
             registry.bind(slot, choice)
         except InputError as error:
             for fault in error.faults:
-                path: KeyPath = ("options", slot, *_key_path(fault.key))
+                key = "use" if fault.code == "unknown-strategy" else fault.key
+                path: KeyPath = ("options", slot, *_key_path(key))
                 at_key = fault.code == "unknown-key"
                 yield document.fault(
                     fault.code, fault.message, path, hint=fault.hint, at_key=at_key
@@ -195,6 +196,8 @@ def _twice(
 def _settings_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
     """Check the options that only make sense together with the chain."""
     count, options = len(model.chain.joints), model.options
+    if count < 2:
+        return
     if options.bend_reference >= count:
         message = f"must be 1 to {count - 1} in a chain of {count} joints"
         found = f"{message}, not {options.bend_reference}"

@@ -16,9 +16,20 @@ FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
-def _listed(value: Any) -> Any:
+def _version(value: Any) -> Any:
+    """Refuse true, which Python takes for 1."""
+    if isinstance(value, bool):
+        message = "must be 1, not {found}"
+        raise PydanticCustomError("choice", message, {"found": found_words(value)})
+    return value
+
+
+def _three(value: Any) -> Any:
     """Let a list stand for a tuple, which strict models refuse otherwise."""
-    return tuple(value) if isinstance(value, list) else value
+    if isinstance(value, list):
+        return tuple(value)
+    message = "must be a list of three numbers, not {found}"
+    raise PydanticCustomError("type", message, {"found": found_words(value)})
 
 
 def _range(value: Any) -> Any:
@@ -53,8 +64,8 @@ def _name(text: str) -> str:
 Name = Annotated[str, AfterValidator(_name)]
 Length = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
-Place = Annotated[tuple[Length, Length, Length], BeforeValidator(_listed)]
-Turn = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_listed)]
+Place = Annotated[tuple[Length, Length, Length], BeforeValidator(_three)]
+Turn = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_three)]
 Range = Annotated[tuple[float, float], BeforeValidator(_range), AfterValidator(_ordered)]
 NOWHERE = (0.0, 0.0, 0.0)
 
@@ -105,7 +116,9 @@ def _goals_form(value: Any) -> str:
 class SceneModel(Model):
     """A whole scene file."""
 
-    limbik: Annotated[Literal[1], Field(description="version of the format")]
+    limbik: Annotated[
+        Literal[1], BeforeValidator(_version), Field(description="version of the format")
+    ]
     chain: ChainModel
     options: Settings = Settings()
     fk: Annotated[
