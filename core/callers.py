@@ -10,7 +10,7 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from limbik.core.jit import invoker, kernel
+from limbik.core.jit import entry, invoker
 from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, INITIAL_BEND, ROOT_CONTROL
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ _root_control = invoker(ROOT_CONTROL)
 _bank_suppression = invoker(BANK_SUPPRESSION)
 
 
-@kernel
+@entry
 def call_initial_bend(
     address: int,
     lengths: Array,
@@ -35,7 +35,7 @@ def call_initial_bend(
         angles[:] = nan
 
 
-@kernel
+@entry
 def call_bend_vector(
     address: int,
     frame: Array,
@@ -53,7 +53,7 @@ def call_bend_vector(
         out[:] = nan
 
 
-@kernel
+@entry
 def call_root_control(
     address: int,
     root: int,
@@ -69,7 +69,7 @@ def call_root_control(
         high[:] = nan
 
 
-@kernel
+@entry
 def call_bank_suppression(
     address: int,
     target: Array,

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from limbik.core.callers import call_initial_bend as call_initial_bend
     from limbik.core.callers import call_root_control as call_root_control
 
+PASSED_OVER = "none"
+"""A slot whose strategy has this name is passed over: a solve does not even call it."""
+
 Kind = Literal["count", "number", "vector", "matrix", "params"]
 Sample = tuple[Any, ...]
 

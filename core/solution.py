@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from limbik.core.chain import AXES, Chain
 from limbik.core.rotation import Array
@@ -120,9 +120,9 @@ class Solution:
     angles: Array
     positions: Array
     rotations: Array
-    iterations: int | Array
+    iterations: int | NDArray[np.int64]
     distance: float | Array
-    status: Status | Array
+    status: Status | NDArray[np.int64]
     bend_vector: Array
     bend_angle: float | Array
     continuity: Continuity | None = None

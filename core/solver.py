@@ -18,9 +18,11 @@ from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
+from limbik.core.slots import PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
 
 FAILED = 10  # status numbers from here on name the slot whose strategy failed
+LARGEST = 1e100  # squares of larger numbers overflow
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
 
 
@@ -66,7 +68,7 @@ class Solver:
         """Addresses and parameters of the strategies; compiles them on first use."""
         chosen = self.strategies
         return Plugs(
-            **{slot: chosen[slot].address for slot in SLOT_ORDER},
+            **{slot: _address(chosen[slot]) for slot in SLOT_ORDER},
             params=np.array([chosen[slot].values for slot in SLOT_ORDER]),
         )
 
@@ -107,6 +109,8 @@ class Solver:
         out = _Arrays(1, n, stages)
         count = self._run(goals, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
+        if numbers[2] >= FAILED:
+            raise self._blame(int(numbers[2]), goals[0])
         return Solution(
             self.chain,
             goals[0],
@@ -189,7 +193,7 @@ class Solver:
         return self._many(points, out, Continuity(memory))
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: "_Arrays") -> int:
-        count = self._kernel(
+        return self._kernel(
             self._body,
             self._options,
             self._plugs,
@@ -203,17 +207,16 @@ class Solver:
             out.numbers,
             out.trace,
         )
-        worst = out.numbers[:, 2].max() if len(goals) else 0.0
-        if worst >= FAILED:
-            bound = self.strategies[SLOT_ORDER[int(worst) - FAILED]]
-            row = int(np.argmax(out.numbers[:, 2]))
-            raise PluginError(
-                f"its result for the goal {goals[row].tolist()} is not a finite number",
-                bound.plugin.name,
-                bound.name,
-                bound.slot,
-            )
-        return count
+
+    def _blame(self, failure: int, goal: Array) -> PluginError:
+        """Return the error of a strategy whose result is not a number."""
+        bound = self.strategies[SLOT_ORDER[failure - FAILED]]
+        return PluginError(
+            f"its result for the goal {goal.tolist()} is not a finite number",
+            bound.plugin.name,
+            bound.name,
+            bound.slot,
+        )
 
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:
@@ -221,6 +224,9 @@ class Solver:
         return _checked(fk_offsets, (len(self.chain), 3), "FK offsets")
 
     def _many(self, goals: Array, out: "_Arrays", continuity: Continuity | None) -> Solution:
+        status = out.numbers[:, 2].astype(np.int64)
+        if (status >= FAILED).any():
+            raise self._blame(int(status.max()), goals[status.argmax()])
         return Solution(
             self.chain,
             goals,
@@ -229,7 +235,7 @@ class Solver:
             out.rotations,
             out.numbers[:, 0].astype(np.int64),
             out.numbers[:, 1],
-            out.numbers[:, 2].astype(np.int64),
+            status,
             out.numbers[:, 3:6],
             out.numbers[:, 6],
             continuity,
@@ -267,21 +273,29 @@ class _Arrays:
         return views
 
 
+def _address(bound: Bound) -> int:
+    """Return the address of a strategy, 0 for one that is passed over."""
+    return 0 if bound.name == PASSED_OVER else bound.address
+
+
 def _checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
     """Return values as a contiguous float64 array, or say what is wrong with them."""
-    expected = "(" + ", ".join("m" if size is None else str(size) for size in shape) + ")"
     try:
         array = np.ascontiguousarray(values, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"{what}: expected numbers of shape {expected}") from None
-    fits = array.ndim == len(shape) and all(
-        size is None or size == found for size, found in zip(shape, array.shape, strict=True)
-    )
-    if not fits:
-        raise InputError(f"{what}: expected shape {expected}, found {array.shape}")
-    if not np.isfinite(array).all():
-        raise InputError(f"{what}: every number must be finite")
+        raise InputError(f"{what}: expected numbers of shape {_shown(shape)}") from None
+    expects_rows = shape[0] is None
+    if array.ndim != len(shape) or array.shape[expects_rows:] != shape[expects_rows:]:
+        raise InputError(f"{what}: expected shape {_shown(shape)}, found {array.shape}")
+    # A few numbers are checked faster one by one than by numpy.
+    few = array.ravel().tolist() if array.size < 16 else (array.min(), array.max())
+    if not all(-LARGEST < value < LARGEST for value in few):
+        raise InputError(f"{what}: every number must be finite and below {LARGEST:g} in size")
     return array
+
+
+def _shown(shape: tuple[int | None, ...]) -> str:
+    return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
 
 
 def _check_fit(chain: Chain, settings: Settings) -> None:

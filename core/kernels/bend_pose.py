@@ -3,18 +3,29 @@
 from math import acos, atan2, cos, inf, isfinite, nan, pi, sin
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.frames import add_offsets, place, place_from, renew_angles
-from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.frames import (
+    add_offsets,
+    base_rotation,
+    place,
+    place_from,
+    renew_angles,
+    set_angles,
+)
+from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
     ZERO_LENGTH,
     ZERO_TURN,
-    copy_vector,
+    add,
+    clamp,
+    column,
     cross,
-    hpb_to_matrix,
-    norm,
+    has_direction,
+    matrix,
     rotate,
     rotate_back,
-    turn_about,
+    scale,
+    turned,
+    vector,
     wrap_angle,
 )
 from limbik.core.kernels.turn import turn_joint
@@ -24,37 +35,35 @@ from limbik.core.slots import call_initial_bend
 
 @kernel
 def find_bend_angles(
-    body: Body, options: Options, plugs: Plugs, distance: float, pose: Pose
+    distance: float, body: Body, options: Options, plugs: Plugs, pose: Pose
 ) -> bool:
     """Ask the initial-bend method for the angle of every bone from the root on.
 
     Args:
+        distance: Root to goal [length].
         body: The chain.
         options: Of the solve.
         plugs: Of the solve.
-        distance: Root to goal [length].
         pose: Its `bones` are set: lengths, weights, angles.
 
     Returns:
         False where the strategy gave something that is not finite.
     """
-    root, n = options.root, body.offsets.shape[0]
-    count = n - 1 - root
-    ratio = distance / options.root_to_end
-    bend_angle = acos(min(ratio, 1.0))
+    root, reach = options.root, options.root_to_end
+    count = body.offsets.shape[0] - 1 - root
+    ratio = distance / reach
     # 000 §6.1(12)
     base = options.coefficient_base
-    coefficient = (1.0 - bend_angle / (0.5 * pi)) * (1.0 - base) + base
+    coefficient = (1.0 - acos(min(ratio, 1.0)) / (0.5 * pi)) * (1.0 - base) + base
     # 000 §6.1(13); the apex stays on the chain and C in 0..1 (3D A-43)
-    apex = min(max(ratio, 0.5), 1.0)
+    apex = clamp(ratio, 0.5, 1.0)
     spread = options.weight_max - options.weight_min
     for bone in range(count):
-        at = (body.along[root + bone] - body.along[root]) / options.root_to_end
-        c = min(max(1.0 - abs(apex - at), 0.0), 1.0)
+        at = (body.along[root + bone] - body.along[root]) / reach
+        c = clamp(1.0 - abs(apex - at), 0.0, 1.0)
         weight = 1.0 + options.weight_min + c * c * c * spread
-        pose.bones[0, bone] = (
-            body.along[root + bone + 1] - body.along[root + bone]
-        ) / options.root_to_end
+        length = body.along[root + bone + 1] - body.along[root + bone]
+        pose.bones[0, bone] = length / reach
         pose.bones[1, bone] = weight * coefficient
         pose.bones[2, bone] = nan
     call_initial_bend(
@@ -65,14 +74,16 @@ def find_bend_angles(
         plugs.params[0],
         pose.bones[2, :count],
     )
+    total = 0.0
     for bone in range(count):
-        if not isfinite(pose.bones[2, bone]):
-            return False
-    return True
+        total += pose.bones[2, bone]
+    return isfinite(total)
 
 
 @kernel
-def bend_pose(body: Body, options: Options, plugs: Plugs, fk: Array, pose: Pose) -> None:
+def bend_pose(
+    bend: Bend, body: Body, options: Options, plugs: Plugs, fk: Array, pose: Pose
+) -> None:
     """Bend the chain from its aim pose (000 §7.6, initial bend pose).
 
     Joints held from either end stay as they are when the options say so (3D A-23).
@@ -80,58 +91,54 @@ def bend_pose(body: Body, options: Options, plugs: Plugs, fk: Array, pose: Pose)
     n, root = body.offsets.shape[0], options.root
     reference = root + 1
     if n - 1 - reference <= 0:
-        place_from(0, body, pose)  # one bone after the root: nothing to bend
-        return
+        return  # one bone after the root: nothing to bend
     first = options.bend_held_base
     last = n - 1 - options.bend_held_end
+    start = first
     if last < reference:
         for joint in range(first, last):
             add_offsets(joint, fk, pose, options)
-        place_from(0, body, pose)
+        place_from(first, body, pose)
         return
     if first <= root:
         for joint in range(first, root):
             add_offsets(joint, fk, pose, options)
             place(joint, body, pose)
         place(root, body, pose)
-        _bend_joint(root, body, options, plugs, pose)
+        _bend_joint(root, bend, body, options, plugs, pose)
         place(root, body, pose)
         if last > reference:
-            turn_reference_axis(body, options, fk, pose)
-        first = reference
-    place_from(min(first, reference), body, pose)
-    for joint in range(first, last):
+            turn_reference_axis(bend, body, options, fk, pose)
+        start = reference
+    for joint in range(start, last):
         place(joint, body, pose)
-        _bend_joint(joint, body, options, plugs, pose)
+        _bend_joint(joint, bend, body, options, plugs, pose)
         add_offsets(joint, fk, pose, options)
         place(joint, body, pose)
-    place_from(min(first, last), body, pose)
+    place_from(last, body, pose)
 
 
 @kernel
-def _bend_joint(joint: int, body: Body, options: Options, plugs: Plugs, pose: Pose) -> None:
+def _bend_joint(
+    joint: int, bend: Bend, body: Body, options: Options, plugs: Plugs, pose: Pose
+) -> None:
     """Turn a joint's operating vector to its bend direction, within limits."""
     angle = pose.bones[2, joint - options.root]
-    wanted, world, target = pose.vectors[14], pose.vectors[15], pose.vectors[16]
+    base = base_rotation(body)
     if options.off_axis:
         # Each joint's own end direction of the aim pose is turned (3D A-28).
-        copy_vector(pose.directions[joint], world)
-        cross(pose.aim, pose.bend, wanted)
-        rotate(body.base_rotation, wanted, target)
-        turn_about(world, target, angle, pose.vectors[17])
+        axis = rotate(base, cross(bend.aim, bend.vector))
+        world = turned(vector(pose.directions, joint), axis, angle)
     else:
-        for i in range(3):
-            wanted[i] = pose.aim[i] * cos(angle) + pose.bend[i] * sin(angle)
-        rotate(body.base_rotation, wanted, world)
-    rotate_back(pose.parent[joint], world, target)
-    operating = pose.vectors[18]
-    copy_vector(body.operating[joint], operating)
-    if norm(operating) > 0.5:
+        world = rotate(base, add(scale(bend.aim, cos(angle)), scale(bend.vector, sin(angle))))
+    operating = vector(body.operating, joint)
+    if has_direction(operating):
+        target = rotate_back(matrix(pose.parent, joint), world)
         turn_joint(joint, operating, target, 1.0, False, pose, options, plugs)
 
 
 @kernel
-def turn_reference_axis(body: Body, options: Options, fk: Array, pose: Pose) -> None:
+def turn_reference_axis(bend: Bend, body: Body, options: Options, fk: Array, pose: Pose) -> None:
     """Turn the root about its Z axis until the reference axis faces the bend vector.
 
     The twist is added (3D A-25) and the sum stays in the root's bank limits; then the root's FK
@@ -141,38 +148,31 @@ def turn_reference_axis(body: Body, options: Options, fk: Array, pose: Pose) -> 
     place(root, body, pose)
     angle = options.twist
     if options.axis_x != 0.0 or options.axis_y != 0.0:
-        angle += _axis_angle(body, options, pose)
+        angle += _axis_angle(bend, body, options, pose)
     renew_angles(root, pose)
-    bank = pose.angles[root, 2]
-    if pose.high[root, 2] < inf:
-        turned = wrap_angle(bank + angle)
-        if not pose.low[root, 2] <= turned <= pose.high[root, 2]:
-            angle = wrap_angle(angle)
-            turned = min(max(bank + angle, pose.low[root, 2]), pose.high[root, 2])
-    else:
-        turned = wrap_angle(bank + angle)
-    if abs(turned - bank) > ZERO_TURN:
-        pose.angles[root, 2] = turned
-        hpb_to_matrix(pose.angles[root], pose.relative[root])
+    angles = vector(pose.angles, root)
+    low, high = pose.low[root, 2], pose.high[root, 2]
+    bank = wrap_angle(angles[2] + angle)
+    if high < inf and not low <= bank <= high:
+        bank = clamp(angles[2] + wrap_angle(angle), low, high)
+    if abs(bank - angles[2]) > ZERO_TURN:
+        set_angles(root, (angles[0], angles[1], bank), pose)
     add_offsets(root, fk, pose, options)
     place(root, body, pose)
 
 
 @kernel
-def _axis_angle(body: Body, options: Options, pose: Pose) -> float:
+def _axis_angle(bend: Bend, body: Body, options: Options, pose: Pose) -> float:
     """Return the angle about the root's Z from the reference axis to the bend vector [rad]."""
     root, reference = options.root, options.root + 1
     place(reference, body, pose)
-    axis, bend, world = pose.vectors[14], pose.vectors[15], pose.vectors[16]
-    for i in range(3):
-        world[i] = (
-            options.axis_x * pose.world[reference, i, 0]
-            + options.axis_y * pose.world[reference, i, 1]
-        )
-    rotate_back(pose.world[root], world, axis)
-    rotate(body.base_rotation, pose.bend, world)
-    rotate_back(pose.world[root], world, bend)
-    if axis[0] ** 2 + axis[1] ** 2 < ZERO_LENGTH or bend[0] ** 2 + bend[1] ** 2 < ZERO_LENGTH:
+    frame, rotation = matrix(pose.world, root), matrix(pose.world, reference)
+    axis = rotate_back(
+        frame,
+        add(scale(column(rotation, 0), options.axis_x), scale(column(rotation, 1), options.axis_y)),
+    )
+    bent = rotate_back(frame, rotate(base_rotation(body), bend.vector))
+    if axis[0] ** 2 + axis[1] ** 2 < ZERO_LENGTH or bent[0] ** 2 + bent[1] ** 2 < ZERO_LENGTH:
         return 0.0
     # RZ(a) carries (0, 1) to (sin a, cos a): angles run from Y toward X.
-    return atan2(bend[0], bend[1]) - atan2(axis[0], axis[1])
+    return atan2(bent[0], bent[1]) - atan2(axis[0], axis[1])

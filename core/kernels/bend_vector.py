@@ -1,20 +1,32 @@
-"""The bend vector: strategy, smoothing, forbidden cone (000 §6.3(8)(C), §7.6)."""
+"""The bend vector: strategy, smoothing, forbidden cone (000 §6.3(8)(C), §7.6).
+
+All vectors here are in the IK space.
+"""
 
 from math import acos, atan2, cos, isfinite, nan, sin
 
 from limbik.core.jit import kernel
+from limbik.core.kernels.frames import base_rotation
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
+    Vector,
+    across,
+    add,
     angle_between,
-    copy_vector,
+    clamp,
+    column,
     cross,
-    make_perpendicular,
-    norm,
-    normalize,
-    rotate,
+    dot,
+    has_direction,
+    matrix,
     rotate_back,
-    turn_about,
+    scale,
+    store_vector,
+    subtract,
+    turned,
+    unit,
+    vector,
 )
 from limbik.core.rotation import Array
 from limbik.core.slots import call_bend_vector
@@ -22,166 +34,149 @@ from limbik.core.slots import call_bend_vector
 
 @kernel
 def find_bend_vector(
-    body: Body, options: Options, plugs: Plugs, goal: Array, memory: Array, pose: Pose
-) -> bool:
-    """Set the bend vector of a solve in its aim pose.
+    aim: Vector, goal: Vector, body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose
+) -> Vector:
+    """Return the bend vector of a solve in its aim pose, a unit vector.
 
-    The strategy's vector is made perpendicular to the aim, smoothed, turned out of the forbidden
-    cone (3D A-16 to A-18, A-22) and kept for the next solve; the stages use its part across the
-    aim.
+    The strategy's vector is made perpendicular to the aim, smoothed and turned out of the
+    forbidden cone (3D A-16 to A-18, A-22). The stages use its part across the aim (`usable`).
 
     Args:
+        aim: Unit vector root to goal.
+        goal: World [length].
         body: The chain.
         options: Of the solve.
         plugs: Of the solve.
-        goal: (3,) [length], world.
         memory: Continuity of the solve before, (n + 4, 3).
-        pose: In the aim pose; its bend vectors are set.
+        pose: In the aim pose.
 
     Returns:
-        False where the strategy gave something that is not a finite vector.
+        The vector; NaN where the strategy gave something that is not finite.
     """
-    previous, vector = pose.vectors[14], pose.vectors[15]
-    rotate_back(body.base_rotation, memory[2], previous)
-    has_previous = norm(previous) > 0.5
-    if options.hold_bend and has_previous:
-        copy_vector(previous, vector)
+    previous = unit(rotate_back(base_rotation(body), vector(memory, 2)))
+    known = has_direction(previous)
+    if options.hold_bend and known:
+        found = previous
     else:
-        if not _ask_strategy(body, options, plugs, goal, previous, vector, pose):
-            return False
-        if not make_perpendicular(vector, pose.aim):
-            _any_perpendicular(options.root, body, pose, vector)
-        if has_previous and options.bend_smoothing > 0.0:
-            _limit_turn(previous, vector, options.bend_smoothing, pose)
+        asked = _ask_strategy(aim, goal, previous, body, options, plugs, pose)
+        if not isfinite(asked[0] + asked[1] + asked[2]):
+            return nan, nan, nan
+        found = usable(asked, aim, body, options, pose)
+        if known and options.bend_smoothing > 0.0:
+            found = _limit_turn(previous, found, options.bend_smoothing, aim)
     if options.cone_axis >= 0:
-        _leave_cone(options, has_previous, previous, vector, pose)
-    rotate(body.base_rotation, vector, pose.bend_world)
-    copy_vector(vector, pose.bend)
-    if not make_perpendicular(pose.bend, pose.aim):
-        _any_perpendicular(options.root, body, pose, pose.bend)
-    return True
+        found = _leave_cone(found, previous, aim, options)
+    return found
+
+
+@kernel
+def usable(bend: Vector, aim: Vector, body: Body, options: Options, pose: Pose) -> Vector:
+    """Return the unit vector of a bend vector's part across the aim.
+
+    Where nothing is left, the root's Y axis across the aim stands for it, then X, then Z.
+    """
+    found = across(bend, aim)
+    if has_direction(found):
+        return found
+    frame, base = matrix(pose.world, options.root), base_rotation(body)
+    found = across(rotate_back(base, column(frame, 1)), aim)
+    if not has_direction(found):
+        found = across(rotate_back(base, column(frame, 0)), aim)
+    if not has_direction(found):
+        found = across(rotate_back(base, column(frame, 2)), aim)
+    return found
 
 
 @kernel
 def _ask_strategy(
+    aim: Vector,
+    goal: Vector,
+    previous: Vector,
     body: Body,
     options: Options,
     plugs: Plugs,
-    goal: Array,
-    previous: Array,
-    vector: Array,
     pose: Pose,
-) -> bool:
-    """Write the strategy's bend vector, IK space, (3,); False where it is not finite."""
+) -> Vector:
+    """Return the strategy's bend vector."""
     root, end = options.root, body.offsets.shape[0] - 1
-    offset, away = pose.vectors[16], pose.vectors[17]
-    for column in range(3):
-        for i in range(3):
-            offset[i] = pose.world[root, i, column]
-        rotate_back(body.base_rotation, offset, away)
-        for i in range(3):
-            pose.matrix[i, column] = away[i]
-    for i in range(3):
-        away[i] = pose.positions[end, i] - goal[i]
-        vector[i] = nan
-    rotate_back(body.base_rotation, away, offset)
-    bank = pose.angles[root, 2] - body.rest[root, 2]
+    frame, base, scratch = matrix(pose.world, root), base_rotation(body), pose.scratch
+    for axis in range(3):
+        local = rotate_back(base, (frame[0][axis], frame[1][axis], frame[2][axis]))
+        scratch[0, axis], scratch[1, axis], scratch[2, axis] = local
+    store_vector(aim, scratch, 3)
+    store_vector(rotate_back(base, subtract(vector(pose.positions, end), goal)), scratch, 4)
+    store_vector(previous, scratch, 5)
+    store_vector((nan, nan, nan), scratch, 6)
     call_bend_vector(
         plugs.bend_vector,
-        pose.matrix,
-        pose.aim,
-        offset,
+        scratch[0:3],
+        scratch[3],
+        scratch[4],
         body.base_rotation,
-        bank,
-        previous,
+        pose.angles[root, 2] - body.rest[root, 2],
+        scratch[5],
         plugs.params[1],
-        vector,
+        scratch[6],
     )
-    return isfinite(vector[0]) and isfinite(vector[1]) and isfinite(vector[2])
+    return vector(scratch, 6)
 
 
 @kernel
-def _any_perpendicular(root: int, body: Body, pose: Pose, vector: Array) -> None:
-    """Write a unit vector across the aim: the root's Y axis, or X where Y lies along it."""
-    axis = pose.vectors[16]
-    for column in (1, 0, 2):
-        for i in range(3):
-            axis[i] = pose.world[root, i, column]
-        rotate_back(body.base_rotation, axis, vector)
-        if make_perpendicular(vector, pose.aim):
-            return
-
-
-@kernel
-def _limit_turn(previous: Array, vector: Array, most: float, pose: Pose) -> None:
-    """Let a vector (3,) turn from the previous one by at most an angle [rad] (E-11I)."""
-    if angle_between(previous, vector) <= most:
-        return
-    axis = pose.vectors[16]
-    cross(previous, vector, axis)
-    if norm(axis) < ZERO_TURN:
+def _limit_turn(previous: Vector, found: Vector, most: float, aim: Vector) -> Vector:
+    """Return the bend vector turned from the previous one by at most an angle [rad] (E-11I)."""
+    if angle_between(previous, found) <= most:
+        return found
+    axis = unit(cross(previous, found))
+    if not has_direction(axis):
         # Opposite: turn in the plane across the aim, where a bend vector lives.
-        copy_vector(pose.aim, axis)
-    normalize(axis)
-    copy_vector(previous, vector)
-    turn_about(vector, axis, most, pose.vectors[17])
-    normalize(vector)
+        axis = aim
+    return unit(turned(previous, axis, most))
 
 
 @kernel
-def _leave_cone(
-    options: Options, has_previous: bool, previous: Array, vector: Array, pose: Pose
-) -> None:
-    """Turn a vector (3,) that is inside the forbidden cone out to its rim (3D A-16).
+def _leave_cone(found: Vector, previous: Vector, aim: Vector, options: Options) -> Vector:
+    """Return the bend vector, turned out to the rim where it is in the forbidden cone (3D A-16).
 
-    `stop` turns it toward the previous vector, `go-around` toward itself; a go-around never
-    turns farther than the smoothing allows.
+    `stop` turns it toward the previous vector, `go-around` toward itself; neither turns farther
+    from the previous vector than the smoothing allows.
     """
-    axis, around = pose.vectors[16], pose.vectors[17]
-    for i in range(3):
-        axis[i] = options.cone_sign if i == options.cone_axis else 0.0
-    if angle_between(vector, axis) >= options.cone_angle:
-        return
-    if has_previous and not options.cone_around:
-        copy_vector(previous, around)
-    else:
-        copy_vector(vector, around)
-    if not make_perpendicular(around, axis):
+    axis = (
+        options.cone_sign if options.cone_axis == 0 else 0.0,
+        options.cone_sign if options.cone_axis == 1 else 0.0,
+        options.cone_sign if options.cone_axis == 2 else 0.0,
+    )
+    if angle_between(found, axis) >= options.cone_angle:
+        return found
+    known = has_direction(previous)
+    side = across(previous if known and not options.cone_around else found, axis)
+    if not has_direction(side):
         # Straight on the cone's axis: leave it across the aim, so that the bend stays usable.
-        cross(pose.aim, axis, around)
-        if not make_perpendicular(around, axis):
-            for i in range(3):
-                around[i] = 1.0 if i == (options.cone_axis + 1) % 3 else 0.0
-    if has_previous and options.cone_around and options.bend_smoothing > 0.0:
-        _limit_azimuth(options, previous, axis, around, pose)
-    c, s = cos(options.cone_angle), sin(options.cone_angle)
-    for i in range(3):
-        vector[i] = axis[i] * c + around[i] * s
+        side = across(cross(aim, axis), axis)
+    if not has_direction(side):
+        side = across((axis[1], axis[2], axis[0]), axis)
+    if known and options.cone_around and options.bend_smoothing > 0.0:
+        side = _limit_azimuth(side, previous, axis, options)
+    # A hair outside, so that rounding cannot put it back in.
+    angle = options.cone_angle + ZERO_TURN
+    return unit(add(scale(axis, cos(angle)), scale(side, sin(angle))))
 
 
 @kernel
-def _limit_azimuth(
-    options: Options, previous: Array, axis: Array, around: Array, pose: Pose
-) -> None:
-    """Turn a rim direction (3,) about the cone's axis so far that smoothing holds.
+def _limit_azimuth(side: Vector, previous: Vector, axis: Vector, options: Options) -> Vector:
+    """Return a rim direction turned about the cone's axis so far that smoothing holds.
 
     On the sphere about the axis, previous at polar angle a and the rim at b with azimuth f apart:
     cos(distance) = cos a cos b + sin a sin b cos f.
     """
-    start, side = pose.vectors[18], pose.vectors[19]
-    copy_vector(previous, start)
+    start = across(previous, axis)
     a, b = angle_between(previous, axis), options.cone_angle
-    if not make_perpendicular(start, axis) or sin(a) * sin(b) < ZERO_TURN:
-        return
+    if not has_direction(start) or sin(a) * sin(b) < ZERO_TURN:
+        return side
     reach = (cos(options.bend_smoothing) - cos(a) * cos(b)) / (sin(a) * sin(b))
-    most = acos(min(max(reach, -1.0), 1.0))
-    cross(axis, start, side)
-    azimuth = atan2(
-        side[0] * around[0] + side[1] * around[1] + side[2] * around[2],
-        start[0] * around[0] + start[1] * around[1] + start[2] * around[2],
-    )
+    most = acos(clamp(reach, -1.0, 1.0))
+    beside = cross(axis, start)
+    azimuth = atan2(dot(beside, side), dot(start, side))
     if abs(azimuth) <= most:
-        return
-    turned = most if azimuth > 0.0 else -most
-    for i in range(3):
-        around[i] = start[i] * cos(turned) + side[i] * sin(turned)
+        return side
+    angle = most if azimuth > 0.0 else -most
+    return add(scale(start, cos(angle)), scale(beside, sin(angle)))

@@ -6,16 +6,22 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
+from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
-    copy_vector,
+    Vector,
+    add,
+    clamp,
     hpb_to_matrix,
+    matrix,
     matrix_to_hpb,
     multiply,
     nearest_form,
     rotate,
+    store_matrix,
+    store_vector,
+    vector,
     wrap_angle,
 )
-from limbik.core.kernels.turn import FIXED
 from limbik.core.rotation import Array
 
 
@@ -33,31 +39,37 @@ def new_pose(n: int) -> Pose:
         np.zeros(n, np.int64),
         np.zeros(n, np.int64),
         np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
         np.zeros((3, n)),
-        np.zeros(3),
-        np.zeros(3),
-        np.zeros(3),
         np.zeros((n, 3)),
-        np.zeros((24, 3)),
-        np.zeros((3, 3)),
+        np.zeros((8, 3)),
+    )
+
+
+@kernel
+def base_rotation(body: Body) -> tuple[Vector, Vector, Vector]:
+    """Return the axes of the IK space in the world."""
+    return (
+        vector(body.base_rotation, 0),
+        vector(body.base_rotation, 1),
+        vector(body.base_rotation, 2),
     )
 
 
 @kernel
 def place(joint: int, body: Body, pose: Pose) -> None:
     """Renew position, parent frame and world frame of a joint from the joint before it."""
-    offset = pose.vectors[12]
+    offset, frozen = vector(body.offsets, joint), matrix(body.frozen, joint)
     if joint == 0:
-        rotate(body.base_rotation, body.offsets[0], offset)
-        multiply(body.base_rotation, body.frozen[0], pose.parent[0])
-        for i in range(3):
-            pose.positions[0, i] = body.base_position[i] + offset[i]
+        frame = base_rotation(body)
+        origin = (body.base_position[0], body.base_position[1], body.base_position[2])
     else:
-        rotate(pose.world[joint - 1], body.offsets[joint], offset)
-        multiply(pose.world[joint - 1], body.frozen[joint], pose.parent[joint])
-        for i in range(3):
-            pose.positions[joint, i] = pose.positions[joint - 1, i] + offset[i]
-    multiply(pose.parent[joint], pose.relative[joint], pose.world[joint])
+        frame = matrix(pose.world, joint - 1)
+        origin = vector(pose.positions, joint - 1)
+    parent = multiply(frame, frozen)
+    store_vector(add(origin, rotate(frame, offset)), pose.positions, joint)
+    store_matrix(parent, pose.parent, joint)
+    store_matrix(multiply(parent, matrix(pose.relative, joint)), pose.world, joint)
 
 
 @kernel
@@ -68,30 +80,46 @@ def place_from(first: int, body: Body, pose: Pose) -> None:
 
 
 @kernel
+def set_angles(joint: int, angles: Vector, pose: Pose) -> None:
+    """Give a joint angles [rad] and the rotation they make."""
+    store_vector(angles, pose.angles, joint)
+    store_matrix(hpb_to_matrix(angles), pose.relative, joint)
+
+
+@kernel
 def renew_angles(joint: int, pose: Pose) -> None:
     """Read a free joint's angles from its matrix, in the form nearest to the old ones."""
-    if not pose.free[joint]:
-        return
-    found = pose.vectors[13]
-    matrix_to_hpb(pose.relative[joint], pose.angles[joint, 2], found)
-    nearest_form(found, pose.angles[joint])
-    copy_vector(found, pose.angles[joint])
-    hpb_to_matrix(pose.angles[joint], pose.relative[joint])
+    if pose.free[joint]:
+        old = vector(pose.angles, joint)
+        found = matrix_to_hpb(matrix(pose.relative, joint), old[2])
+        set_angles(joint, nearest_form(found, old), pose)
+
+
+@kernel
+def clamp_angles(joint: int, angles: Vector, pose: Pose) -> Vector:
+    """Return angles [rad] pulled into a joint's effective limits."""
+    return (
+        clamp(angles[0], pose.low[joint, 0], pose.high[joint, 0]),
+        clamp(angles[1], pose.low[joint, 1], pose.high[joint, 1]),
+        clamp(angles[2], pose.low[joint, 2], pose.high[joint, 2]),
+    )
 
 
 @kernel
 def mark_limits(pose: Pose) -> None:
-    """Note which joints are free of limits now and which can move at all."""
+    """Note which joints are free of limits now, which can move at all, which are hinges."""
     for joint in range(pose.angles.shape[0]):
-        free = 1
-        moves = 0
-        for i in range(3):
-            if pose.low[joint, i] > -inf or pose.high[joint, i] < inf:
-                free = 0
-            if pose.high[joint, i] - pose.low[joint, i] > FIXED:
-                moves = 1
-        pose.free[joint] = free
-        pose.moves[joint] = moves
+        bounded = 0
+        moving = 0
+        for axis in range(3):
+            low, high = pose.low[joint, axis], pose.high[joint, axis]
+            if low > -inf or high < inf:
+                bounded += 1
+            if high - low > FIXED:
+                moving += 1
+        pose.free[joint] = int(bounded == 0)
+        pose.moves[joint] = int(moving > 0)
+        pose.hinged[joint] = int(0 < moving < 3)
 
 
 @kernel
@@ -104,12 +132,13 @@ def add_offsets(joint: int, fk: Array, pose: Pose, options: Options) -> None:
         pose: Changed in place.
         options: Of the solve.
     """
-    if fk[joint, 0] == 0.0 and fk[joint, 1] == 0.0 and fk[joint, 2] == 0.0:
+    offset = vector(fk, joint)
+    if offset[0] == 0.0 and offset[1] == 0.0 and offset[2] == 0.0:
         return
     renew_angles(joint, pose)
-    for i in range(3):
-        angle = pose.angles[joint, i] + fk[joint, i] * options.fk_strength
-        if pose.high[joint, i] == inf:
+    for axis in range(3):
+        angle = pose.angles[joint, axis] + fk[joint, axis] * options.fk_strength
+        if pose.high[joint, axis] == inf:
             angle = wrap_angle(angle)
-        pose.angles[joint, i] = min(max(angle, pose.low[joint, i]), pose.high[joint, i])
-    hpb_to_matrix(pose.angles[joint], pose.relative[joint])
+        pose.angles[joint, axis] = clamp(angle, pose.low[joint, axis], pose.high[joint, axis])
+    set_angles(joint, vector(pose.angles, joint), pose)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from limbik.core.rotation import Array
 
+Vector = tuple[float, float, float]
+
 
 class Body(NamedTuple):
     """A chain of n joints."""
@@ -104,19 +106,22 @@ class Pose(NamedTuple):
     """Whether a joint has no limit at all now, (n,) of 0 or 1."""
     moves: Array
     """Whether a joint has an axis that is not fixed, (n,) of 0 or 1."""
+    hinged: Array
+    """Whether a joint has a fixed axis and a free one, (n,) of 0 or 1."""
     violations: Array
     """Turns in a row that asked for more than the limits, (n,) integers."""
     bones: Array
-    """Bone lengths from the root over root-to-end length, weights, bend angles, (3, n) [-], [rad]."""
-    aim: Array
-    """Unit vector root to goal in the aim pose, IK space, (3,)."""
-    bend: Array
-    """Bend vector across the aim, IK space, (3,)."""
-    bend_world: Array
-    """Bend vector after cone and smoothing, world, (3,): what the next solve continues."""
+    """Bone lengths from the root over root-to-end length, weights, angles [rad], (3, n)."""
     directions: Array
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
-    vectors: Array
-    """Scratch vectors, (24, 3): 0-11 belong to `turn`, 12-23 to the stages."""
-    matrix: Array
-    """Scratch, (3, 3)."""
+    scratch: Array
+    """Arguments of strategies, (8, 3)."""
+
+
+class Bend(NamedTuple):
+    """The plane a solve bends in, IK space."""
+
+    aim: Vector
+    """Unit vector root to goal in the aim pose."""
+    vector: Vector
+    """Unit bend vector across the aim."""

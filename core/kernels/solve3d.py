@@ -1,23 +1,38 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
-from math import atan2, inf, isnan, sqrt
+from math import atan2, inf, isnan
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
-from limbik.core.kernels.bend_vector import find_bend_vector
+from limbik.core.kernels.bend_vector import find_bend_vector, usable
 from limbik.core.kernels.ccd import ccd_round
-from limbik.core.kernels.frames import mark_limits, new_pose, place, place_from, renew_angles
-from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.frames import (
+    base_rotation,
+    clamp_angles,
+    mark_limits,
+    new_pose,
+    place,
+    place_from,
+    renew_angles,
+    set_angles,
+)
+from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
 from limbik.core.kernels.rotation import (
-    copy_matrix,
-    copy_vector,
-    hpb_to_matrix,
+    Vector,
+    add,
+    clamp,
+    has_direction,
+    matrix,
     matrix_to_hpb,
     nearest_form,
     norm,
-    normalize,
     rotate,
     rotate_back,
+    scale,
+    store_vector,
+    subtract,
+    unit,
+    vector,
     wrap_angle,
 )
 from limbik.core.kernels.turn import turn_joint
@@ -29,8 +44,8 @@ REACHED = 0
 STOPPED = 1
 FAILED = 10
 
-# Columns of a solve's numbers.
-ITERATIONS, DISTANCE, STATUS, BEND_X, BEND_Y, BEND_Z, BEND_ANGLE, NUMBERS = 0, 1, 2, 3, 4, 5, 6, 7
+# Columns of a solve's numbers; the bend vector takes three.
+ITERATIONS, DISTANCE, STATUS, BEND, BEND_ANGLE = 0, 1, 2, 3, 6
 
 RENEW_EVERY = 32  # rounds after which free joints' matrices are made from angles again
 
@@ -76,21 +91,30 @@ def solve_goals(
     stages = 0
     for row in range(goals.shape[0]):
         if not chained:
-            copy_matrix(kept, memory)
-        stages = _solve(body, options, plugs, goals[row], fk, memory, pose, numbers[row], trace)
-        copy_matrix(pose.angles, angles[row])
-        copy_matrix(pose.positions, positions[row])
+            _copy(kept, memory)
+        goal = vector(goals, row)
+        stages = _solve(goal, body, options, plugs, fk, memory, pose, numbers[row], trace)
+        _copy(pose.angles, angles[row])
+        _copy(pose.positions, positions[row])
         for joint in range(n):
-            copy_matrix(pose.world[joint], rotations[row, joint])
+            _copy(pose.world[joint], rotations[row, joint])
     return stages
 
 
 @kernel
+def _copy(source: Array, out: Array) -> None:
+    """Copy a matrix element by element; a slice assignment would allocate."""
+    for row in range(out.shape[0]):
+        for place_in_row in range(out.shape[1]):
+            out[row, place_in_row] = source[row, place_in_row]
+
+
+@kernel
 def _solve(
+    goal: Vector,
     body: Body,
     options: Options,
     plugs: Plugs,
-    goal: Array,
     fk: Array,
     memory: Array,
     pose: Pose,
@@ -98,153 +122,152 @@ def _solve(
     trace: Array,
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
-    pose.bend_world.fill(0.0)
-    failed = FAILED + 2
-    stages = 0
-    iterations = -2
-    if _initial_pose(body, options, plugs, memory, pose):
-        stages = _record(stages, pose, trace)
-        failed = 0
-        if options.max_iterations > -2 and not options.full_fk:
-            iterations = -1
-            failed, distance = _aim_stage(body, options, plugs, goal, fk, memory, pose)
+    bend_world = (0.0, 0.0, 0.0)
+    iterations, failed, stages = -2, 0, 0
+    if not _initial_pose(body, options, plugs, memory, pose):
+        failed = FAILED + 2
+    stages = _record(stages, pose, trace)
+    if failed == 0 and options.max_iterations > -2 and not options.full_fk:
+        iterations = -1
+        aim, distance = _aim_pose(goal, body, options, plugs, memory, pose)
+        found = find_bend_vector(aim, goal, body, options, plugs, memory, pose)
+        if isnan(found[0]):
+            failed = FAILED + 1
+        else:
+            bend_world = rotate(base_rotation(body), found)
+            store_vector(bend_world, memory, 2)
+            bend = Bend(aim, usable(found, aim, body, options, pose))
+            if options.max_iterations == -1:
+                _twist_aim(bend, body, options, fk, pose)
             stages = _record(stages, pose, trace)
-        if options.max_iterations > -1 and not options.full_fk and failed == 0:
-            if find_bend_angles(body, options, plugs, distance, pose):
-                bend_pose(body, options, plugs, fk, pose)
-                stages = _record(stages, pose, trace)
-                iterations, stages = _rounds(body, options, plugs, goal, pose, trace, stages)
-            else:
-                failed = FAILED
+            if options.max_iterations > -1:
+                if find_bend_angles(distance, body, options, plugs, pose):
+                    bend_pose(bend, body, options, plugs, fk, pose)
+                    stages = _record(stages, pose, trace)
+                    iterations, stages = _rounds(goal, body, options, plugs, pose, trace, stages)
+                else:
+                    failed = FAILED
     _finish_pose(body, options, fk, memory, pose)
-    _write_numbers(options, goal, iterations, failed, pose, numbers)
+    _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
     return stages
 
 
 @kernel
 def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose) -> bool:
     """Set limits and angles of the initial pose; False where root control gave no number."""
-    n = body.offsets.shape[0]
-    copy_matrix(body.low, pose.low)
-    copy_matrix(body.high, pose.high)
+    n, known = body.offsets.shape[0], memory[3, 0] > 0.0
+    _copy(body.low, pose.low)
+    _copy(body.high, pose.high)
+    _copy(body.rest, pose.angles)
     if plugs.root_control != 0:
-        has_previous = int(memory[3, 0])
         last = pose.directions
         for joint in range(n):
-            copy_vector(memory[4 + joint] if has_previous else body.rest[joint], last[joint])
+            store_vector(
+                vector(memory, joint + 4) if known else vector(body.rest, joint), last, joint
+            )
         call_root_control(
             plugs.root_control,
             options.root,
-            has_previous,
+            int(known),
             last,
             plugs.params[2],
             pose.low,
             pose.high,
         )
-    for joint in range(n):
-        for i in range(3):
-            low, high = pose.low[joint, i], pose.high[joint, i]
-            if isnan(low) or isnan(high) or low > high:
-                return False
-            pose.low[joint, i] = min(max(low, body.low[joint, i]), body.high[joint, i])
-            pose.high[joint, i] = min(max(high, body.low[joint, i]), body.high[joint, i])
+        if not _limits_hold(body, pose):
+            return False
     mark_limits(pose)
-    copy_matrix(body.rest, pose.angles)
-    if options.from_previous and options.max_iterations > -2 and memory[3, 0] > 0.0:
-        copy_vector(memory[0], pose.angles[0])
-        copy_vector(memory[1], pose.angles[options.root])
+    if options.from_previous and options.max_iterations > -2 and known:
+        store_vector(vector(memory, 0), pose.angles, 0)
+        store_vector(vector(memory, 1), pose.angles, options.root)
     for joint in range(n):
-        for i in range(3):
-            pose.angles[joint, i] = min(
-                max(pose.angles[joint, i], pose.low[joint, i]), pose.high[joint, i]
-            )
-        hpb_to_matrix(pose.angles[joint], pose.relative[joint])
+        set_angles(joint, clamp_angles(joint, vector(pose.angles, joint), pose), pose)
         pose.violations[joint] = 0
     place_from(0, body, pose)
     return True
 
 
 @kernel
-def _aim_stage(
-    body: Body, options: Options, plugs: Plugs, goal: Array, fk: Array, memory: Array, pose: Pose
-) -> tuple[int, float]:
-    """Aim, find the bend vector, keep both; return a failure code and the distance root→goal."""
-    root, n = options.root, body.offsets.shape[0]
-    distance = _aim_pose(body, options, plugs, goal, pose)
-    renew_angles(0, pose)
-    renew_angles(root, pose)
-    copy_vector(pose.angles[0], memory[0])
-    copy_vector(pose.angles[root], memory[1])
-    failed = 0
-    if find_bend_vector(body, options, plugs, goal, memory, pose):
-        copy_vector(pose.bend_world, memory[2])
-    else:
-        failed = FAILED + 1
-    if options.off_axis:
-        for joint in range(n - 1):
-            for i in range(3):
-                pose.directions[joint, i] = pose.positions[n - 1, i] - pose.positions[joint, i]
-            if not normalize(pose.directions[joint]):
-                rotate(body.base_rotation, pose.aim, pose.directions[joint])
-    if options.aim_twist and options.max_iterations == -1 and failed == 0:
-        turn_reference_axis(body, options, fk, pose)
-        place_from(root + 1, body, pose)
-    return failed, distance
+def _limits_hold(body: Body, pose: Pose) -> bool:
+    """Pull a root control's limits into the joints' own; False where they are none."""
+    for joint in range(body.offsets.shape[0]):
+        for axis in range(3):
+            low, high = pose.low[joint, axis], pose.high[joint, axis]
+            if isnan(low) or isnan(high) or low > high:
+                return False
+            pose.low[joint, axis] = clamp(low, body.low[joint, axis], body.high[joint, axis])
+            pose.high[joint, axis] = clamp(high, body.low[joint, axis], body.high[joint, axis])
+    return True
 
 
 @kernel
-def _aim_pose(body: Body, options: Options, plugs: Plugs, goal: Array, pose: Pose) -> float:
-    """Turn every joint's operating vector toward the goal; return the distance root→goal."""
+def _aim_pose(
+    goal: Vector, body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose
+) -> tuple[Vector, float]:
+    """Turn every joint's operating vector toward the goal (000 §6.3(8)(B)).
+
+    Returns:
+        Unit vector root to goal, IK space, and the distance root to goal [length].
+    """
     n, root = body.offsets.shape[0], options.root
-    point, away = pose.vectors[20], pose.vectors[21]
-    for i in range(3):
-        away[i] = goal[i] - pose.positions[0, i]
-    if normalize(away):
-        for i in range(3):
-            point[i] = pose.positions[0, i] + away[i] * body.along[n - 1]
+    base = vector(pose.positions, 0)
+    away = unit(subtract(goal, base))
+    if has_direction(away):
+        point = add(base, scale(away, body.along[n - 1]))
         for joint in range(root):
-            place(joint, body, pose)
             _aim_joint(joint, point, body, options, plugs, pose)
-            place(joint, body, pose)
     place(root, body, pose)
-    for i in range(3):
-        away[i] = goal[i] - pose.positions[root, i]
-    distance = norm(away)
-    if normalize(away):
-        for i in range(3):
-            point[i] = pose.positions[root, i] + away[i] * options.root_to_end
+    origin = vector(pose.positions, root)
+    distance = norm(subtract(goal, origin))
+    away = unit(subtract(goal, origin))
+    if has_direction(away):
+        point = add(origin, scale(away, options.root_to_end))
         for joint in range(root, n - 1):
-            place(joint, body, pose)
             _aim_joint(joint, point, body, options, plugs, pose)
-            place(joint, body, pose)
     else:
         # The goal is on the root: no direction to aim along, the root's own stands for it.
-        rotate(pose.world[root], body.operating[root], away)
+        away = rotate(matrix(pose.world, root), vector(body.operating, root))
     place_from(root, body, pose)
-    rotate_back(body.base_rotation, away, pose.aim)
-    return distance
+    renew_angles(0, pose)
+    renew_angles(root, pose)
+    store_vector(vector(pose.angles, 0), memory, 0)
+    store_vector(vector(pose.angles, root), memory, 1)
+    if options.off_axis:
+        end = vector(pose.positions, n - 1)
+        for joint in range(n - 1):
+            direction = unit(subtract(end, vector(pose.positions, joint)))
+            store_vector(direction if has_direction(direction) else away, pose.directions, joint)
+    return rotate_back(base_rotation(body), away), distance
 
 
 @kernel
 def _aim_joint(
-    joint: int, point: Array, body: Body, options: Options, plugs: Plugs, pose: Pose
+    joint: int, point: Vector, body: Body, options: Options, plugs: Plugs, pose: Pose
 ) -> None:
-    """Turn a joint's operating vector toward a world point (3,), within limits."""
-    reach, target, operating = pose.vectors[14], pose.vectors[15], pose.vectors[16]
-    for i in range(3):
-        reach[i] = point[i] - pose.positions[joint, i]
-    rotate_back(pose.parent[joint], reach, target)
-    copy_vector(body.operating[joint], operating)
-    if normalize(target) and norm(operating) > 0.5:
+    """Turn a joint's operating vector toward a world point, within limits."""
+    place(joint, body, pose)
+    away = subtract(point, vector(pose.positions, joint))
+    target = unit(rotate_back(matrix(pose.parent, joint), away))
+    operating = vector(body.operating, joint)
+    if has_direction(target) and has_direction(operating):
         turn_joint(joint, operating, target, 1.0, False, pose, options, plugs)
+        place(joint, body, pose)
+
+
+@kernel
+def _twist_aim(bend: Bend, body: Body, options: Options, fk: Array, pose: Pose) -> None:
+    """Twist the root in an aim pose that is the answer (000 §6.3(11)(M))."""
+    if options.aim_twist:
+        turn_reference_axis(bend, body, options, fk, pose)
+        place_from(options.root + 1, body, pose)
 
 
 @kernel
 def _rounds(
+    goal: Vector,
     body: Body,
     options: Options,
     plugs: Plugs,
-    goal: Array,
     pose: Pose,
     trace: Array,
     stages: int,
@@ -253,12 +276,15 @@ def _rounds(
 
     Round k has strength min(k x smoothing, 1), k from 1 (3D A-12). A full-strength round that
     changes nothing ends the loop (3D A-36).
+
+    Returns:
+        Rounds run, stages traced.
     """
     done = 0
     while done < options.max_iterations and distance_to(goal, pose) >= options.tolerance:
         done += 1
         strength = min(done * options.smoothing, 1.0)
-        moved = ccd_round(strength, body, options, plugs, goal, pose)
+        moved = ccd_round(strength, goal, body, options, plugs, pose)
         if done % RENEW_EVERY == 0:
             for joint in range(body.offsets.shape[0]):
                 renew_angles(joint, pose)
@@ -269,13 +295,9 @@ def _rounds(
 
 
 @kernel
-def distance_to(goal: Array, pose: Pose) -> float:
-    """Return the distance of the end from a goal (3,) [length]."""
-    end = pose.positions.shape[0] - 1
-    x = goal[0] - pose.positions[end, 0]
-    y = goal[1] - pose.positions[end, 1]
-    z = goal[2] - pose.positions[end, 2]
-    return sqrt(x * x + y * y + z * z)
+def distance_to(goal: Vector, pose: Pose) -> float:
+    """Return the distance of the end from a goal [length]."""
+    return norm(subtract(goal, vector(pose.positions, pose.positions.shape[0] - 1)))
 
 
 @kernel
@@ -285,50 +307,63 @@ def _record(stages: int, pose: Pose, trace: Array) -> int:
         return stages
     for joint in range(pose.angles.shape[0]):
         renew_angles(joint, pose)
-    copy_matrix(pose.angles, trace[stages])
+    _copy(pose.angles, trace[stages])
     return stages + 1
 
 
 @kernel
 def _finish_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
     """Choose the angles' forms, mix in FK, renew the frames from the angles, keep the pose."""
-    n = body.offsets.shape[0]
-    near, posed = pose.vectors[14], pose.vectors[15]
+    known = memory[3, 0] > 0.0
     mix = 1.0 if options.full_fk else options.fk_mix
-    for joint in range(n):
-        copy_vector(memory[4 + joint] if memory[3, 0] > 0.0 else body.rest[joint], near)
+    for joint in range(body.offsets.shape[0]):
+        angles = vector(pose.angles, joint)
         if pose.free[joint]:
-            matrix_to_hpb(pose.relative[joint], near[2], posed)
-            nearest_form(posed, near)
-            for i in range(3):
-                pose.angles[joint, i] = wrap_angle(posed[i])
+            reference = vector(memory, joint + 4) if known else vector(body.rest, joint)
+            found = matrix_to_hpb(matrix(pose.relative, joint), reference[2])
+            angles = nearest_form(found, reference)
         if mix > 0.0:
-            _mix_joint(joint, mix, body, fk, posed, pose)
-        for i in range(3):
-            if pose.high[joint, i] == inf:
-                pose.angles[joint, i] = wrap_angle(pose.angles[joint, i])
-        hpb_to_matrix(pose.angles[joint], pose.relative[joint])
+            angles = _mixed(joint, angles, mix, body, fk, pose)
+        angles = wrap_free(angles, vector(body.high, joint))
+        set_angles(joint, angles, pose)
+        store_vector(angles, memory, joint + 4)
     place_from(0, body, pose)
     memory[3, 0] = 1.0
-    for joint in range(n):
-        copy_vector(pose.angles[joint], memory[4 + joint])
 
 
 @kernel
-def _mix_joint(joint: int, mix: float, body: Body, fk: Array, posed: Array, pose: Pose) -> None:
-    """Mix a joint's angles with those of the FK pose, nearest forms, then limits (3D A-45)."""
-    for i in range(3):
-        posed[i] = body.rest[joint, i] + fk[joint, i]
+def wrap_free(angles: Vector, high: Vector) -> Vector:
+    """Return angles [rad] with those of axes without limits wrapped into ±180°."""
+    return (
+        angles[0] if high[0] < inf else wrap_angle(angles[0]),
+        angles[1] if high[1] < inf else wrap_angle(angles[1]),
+        angles[2] if high[2] < inf else wrap_angle(angles[2]),
+    )
+
+
+@kernel
+def _mixed(joint: int, angles: Vector, mix: float, body: Body, fk: Array, pose: Pose) -> Vector:
+    """Return angles mixed with those of the FK pose, nearest forms, then limits (3D A-45)."""
+    posed = add(vector(body.rest, joint), vector(fk, joint))
     if pose.free[joint]:
-        nearest_form(posed, pose.angles[joint])
-    for i in range(3):
-        angle = pose.angles[joint, i] * (1.0 - mix) + posed[i] * mix
-        pose.angles[joint, i] = min(max(angle, body.low[joint, i]), body.high[joint, i])
+        posed = nearest_form(posed, angles)
+    mixed = add(scale(angles, 1.0 - mix), scale(posed, mix))
+    return (
+        clamp(mixed[0], body.low[joint, 0], body.high[joint, 0]),
+        clamp(mixed[1], body.low[joint, 1], body.high[joint, 1]),
+        clamp(mixed[2], body.low[joint, 2], body.high[joint, 2]),
+    )
 
 
 @kernel
 def _write_numbers(
-    options: Options, goal: Array, iterations: int, failed: int, pose: Pose, numbers: Array
+    goal: Vector,
+    bend_world: Vector,
+    iterations: int,
+    failed: int,
+    options: Options,
+    pose: Pose,
+    numbers: Array,
 ) -> None:
     """Write iterations, distance, status and bend direction of a solve into numbers (7,)."""
     distance = distance_to(goal, pose)
@@ -338,8 +373,6 @@ def _write_numbers(
         numbers[STATUS] = failed
     else:
         numbers[STATUS] = REACHED if distance < options.tolerance else STOPPED
-    for i in range(3):
-        numbers[BEND_X + i] = pose.bend_world[i]
-    local = pose.vectors[14]
-    rotate_back(pose.world[options.root], pose.bend_world, local)
+    numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = bend_world
+    local = rotate_back(matrix(pose.world, options.root), bend_world)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
