@@ -9,37 +9,59 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.plugins.output.listing import range_text
 from limbik.plugins.output.records import status_label
 
+_FIXED_WIDTH = 30  # status, distance, rounds and the gaps between them
 _WIDE = 10_000  # columns off a terminal: a table in a file is never folded
 
 
 def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
-    """Print goal, status, distance, rounds and the angles of the joints that move [deg]."""
-    moving = _moving(scene)
+    """Print goal, status, distance, rounds and the angles of the joints that move [deg].
+
+    A terminal gets the joints it has room for; a file or a pipe gets all.
+    """
+    console = _console()
+    room = console.width - max(map(len, scene.goal_names)) - _FIXED_WIDTH
+    joints = _joint_columns(scene, solutions, 1)
+    shown, left_out = _fitting(joints, room)
+    if left_out:
+        joints = _joint_columns(scene, solutions, 0)
+        shown, left_out = _fitting(joints, room)
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
     table.add_column("goal")
     table.add_column("status")
     table.add_column("distance", justify="right")
     table.add_column("rounds", justify="right")
-    for joint in moving:
-        table.add_column(f"{scene.chain.names[joint]} h/p/b", justify="right")
-    for name, solution in zip(scene.goal_names, solutions, strict=True):
-        angles = np.degrees(solution.angles)
+    for title in shown:
+        table.add_column(title, justify="right", no_wrap=True)
+    for row, (name, solution) in enumerate(zip(scene.goal_names, solutions, strict=True)):
         table.add_row(
             Text(name),
             Text(status_label(solution), style="green" if solution.reached else "red"),
             f"{float(solution.distance):.2g}",
             str(solution.iterations),
-            *(" ".join(_degrees(angle) for angle in angles[joint]) for joint in moving),
+            *(joints[title][row] for title in shown),
         )
-    console = _console()
     console.print(table)
+    if left_out:
+        console.print(Text(f"{left_out} more joints: see --json or --csv", "dim"))
     reached = sum(bool(solution.reached) for solution in solutions)
     console.print(f"{reached} of {len(solutions)} goals reached")
+
+
+def _fitting(columns: dict[str, list[str]], room: int) -> tuple[list[str], int]:
+    """Titles of the first columns that fit into a width, and how many do not."""
+    shown = []
+    for title, cells in columns.items():
+        room -= max(len(title), *map(len, cells)) + 3
+        if room < 0:
+            break
+        shown.append(title)
+    return shown, len(columns) - len(shown)
 
 
 def _moving(scene: Scene) -> list[int]:
@@ -48,8 +70,20 @@ def _moving(scene: Scene) -> list[int]:
     return [joint for joint in range(len(scene.chain) - 1) if spans[joint].max() > 0.0]
 
 
-def _degrees(angle: float) -> str:
-    return f"{angle + 0.0:.1f}".replace("-0.0", "0.0") if abs(angle) < 0.05 else f"{angle:.1f}"
+def _joint_columns(
+    scene: Scene, solutions: Sequence[Solution], digits: int
+) -> dict[str, list[str]]:
+    """Angles of every joint worth a column, a text for each goal, by title."""
+    poses = [np.degrees(solution.angles) for solution in solutions]
+    return {
+        f"{scene.chain.names[joint]} h/p/b": [_hpb(pose[joint], digits) for pose in poses]
+        for joint in _moving(scene)
+    }
+
+
+def _hpb(angles: Array, digits: int) -> str:
+    rounded = np.round(angles, digits) + 0.0  # -0.0 becomes 0.0
+    return " ".join(f"{angle:.{digits}f}" for angle in rounded.tolist())
 
 
 def print_plugins(record: dict[str, Any]) -> None:

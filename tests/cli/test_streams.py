@@ -1,6 +1,7 @@
 """What goes to which stream, in which characters, and what a light command leaves alone."""
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -78,3 +79,25 @@ def test_solving_announces_that_machine_code_is_compiled(
         monkeypatch.setattr("limbik.core.jit.is_compiled_before", lambda before=before: before)
         _, _, err = run("solve", scene)
         assert ("compiling machine code" in err) is announced
+
+
+@pytest.mark.parametrize("width", [600, 100])
+def test_a_terminal_gets_the_joints_it_has_room_for(run: Run, tmp_path: Path, width: int) -> None:
+    """A folded table of a spine cannot be read; a wide terminal gets all 23 joints that move."""
+    run("init", "spine", "--template", "spine")
+    shown = subprocess.run(
+        [sys.executable, "-m", "limbik", "solve", "spine.yaml"],
+        cwd=tmp_path,
+        env={**os.environ, "FORCE_COLOR": "1", "COLUMNS": str(width)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", shown.stdout).splitlines()
+    joints = lines[0].count("h/p/b")
+    left_out = [line for line in lines if line == f"{23 - joints} more joints: see --json or --csv"]
+
+    assert max(map(len, lines)) <= width
+    assert (joints == 23) is (width == 600)
+    assert len(left_out) == (width == 100)
+    assert len(lines) == 2 + 10 + 1 + len(left_out)
