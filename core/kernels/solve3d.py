@@ -1,6 +1,6 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
-from math import atan2, inf, isnan
+from math import atan2, isnan
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
@@ -17,6 +17,7 @@ from limbik.core.kernels.frames import (
     set_angles,
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
+from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -33,7 +34,6 @@ from limbik.core.kernels.rotation import (
     subtract,
     unit,
     vector,
-    wrap_angle,
 )
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
@@ -323,36 +323,12 @@ def _finish_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
             found = matrix_to_hpb(matrix(pose.relative, joint), reference[2])
             angles = nearest_form(found, reference)
         if mix > 0.0:
-            angles = _mixed(joint, angles, mix, body, fk, pose)
+            angles = mixed(joint, angles, mix, body, fk, pose)
         angles = wrap_free(angles, vector(body.high, joint))
         set_angles(joint, angles, pose)
         store_vector(angles, memory, joint + 4)
     place_from(0, body, pose)
     memory[3, 0] = 1.0
-
-
-@kernel
-def wrap_free(angles: Vector, high: Vector) -> Vector:
-    """Return angles [rad] with those of axes without limits wrapped into ±180°."""
-    return (
-        angles[0] if high[0] < inf else wrap_angle(angles[0]),
-        angles[1] if high[1] < inf else wrap_angle(angles[1]),
-        angles[2] if high[2] < inf else wrap_angle(angles[2]),
-    )
-
-
-@kernel
-def _mixed(joint: int, angles: Vector, mix: float, body: Body, fk: Array, pose: Pose) -> Vector:
-    """Return angles mixed with those of the FK pose, nearest forms, then limits (3D A-45)."""
-    posed = add(vector(body.rest, joint), vector(fk, joint))
-    if pose.free[joint]:
-        posed = nearest_form(posed, angles)
-    mixed = add(scale(angles, 1.0 - mix), scale(posed, mix))
-    return (
-        clamp(mixed[0], body.low[joint, 0], body.high[joint, 0]),
-        clamp(mixed[1], body.low[joint, 1], body.high[joint, 1]),
-        clamp(mixed[2], body.low[joint, 2], body.high[joint, 2]),
-    )
 
 
 @kernel

@@ -4,7 +4,7 @@ All directions here are in the joint's parent frame (parent world x frozen): the
 vector v of the joint stands at `M(angles) v` there and is to move to a wanted direction.
 """
 
-from math import inf
+from math import inf, pi
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.layout import Options, Plugs, Pose
@@ -177,24 +177,36 @@ def angle_gap(a: Vector, b: Vector) -> float:
 def _least_clamped_form(wanted: Vector, before: Vector, low: Vector, high: Vector) -> Vector:
     """Return the HPB form of wanted angles that the limits cut least (3D A-33).
 
-    Limited axes are wrapped into ±180°, where ranges live, so that the long way round is taken
+    Limited axes are wrapped to their ranges, so that the long way round is taken
     when the short one runs into a limit (3D A-68).
     """
-    first = _wrap_limited(wanted, high)
-    second = _wrap_limited(near(other_form(wanted), before), high)
+    first = _wrap_limited(wanted, low, high)
+    second = _wrap_limited(near(other_form(wanted), before), low, high)
     if _cut(second, low, high) < _cut(first, low, high) - ZERO_TURN:
         return second
     return first
 
 
 @kernel
-def _wrap_limited(angles: Vector, high: Vector) -> Vector:
-    """Return angles with those of limited axes wrapped into ±180°."""
+def _wrap_limited(angles: Vector, low: Vector, high: Vector) -> Vector:
+    """Return angles with those of limited axes moved by whole turns to where their ranges are."""
     return (
-        wrap_angle(angles[0]) if high[0] < inf else angles[0],
-        wrap_angle(angles[1]) if high[1] < inf else angles[1],
-        wrap_angle(angles[2]) if high[2] < inf else angles[2],
+        _wrap_to_range(angles[0], low[0], high[0]) if high[0] < inf else angles[0],
+        _wrap_to_range(angles[1], low[1], high[1]) if high[1] < inf else angles[1],
+        _wrap_to_range(angles[2], low[2], high[2]) if high[2] < inf else angles[2],
     )
+
+
+@kernel
+def _wrap_to_range(angle: float, low: float, high: float) -> float:
+    """Return an angle within a half turn of a range's middle, so that a clamp cuts it least."""
+    turned = wrap_angle(angle)
+    off = turned - 0.5 * (low + high)
+    if off > pi:
+        return turned - 2.0 * pi
+    if off < -pi:
+        return turned + 2.0 * pi
+    return turned
 
 
 @kernel
