@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from limbik.core.chain import Chain as Chain
     from limbik.core.chain import Joint as Joint
+    from limbik.core.controller import Controller as Controller
     from limbik.core.errors import LimbikError as LimbikError
     from limbik.core.hooks import hookimpl as hookimpl
     from limbik.core.registry import Registry as Registry
@@ -23,6 +24,7 @@ __version__ = "0.1.0"
 _PUBLIC = {
     "Chain": "limbik.core.chain",
     "Continuity": "limbik.core.solution",
+    "Controller": "limbik.core.controller",
     "Joint": "limbik.core.chain",
     "LimbikError": "limbik.core.errors",
     "Registry": "limbik.core.registry",

@@ -111,6 +111,9 @@ class Settings(Model):
             ge=0.0, le=45.0, description="largest turn of the bend vector a solve [deg]; 0 = off"
         ),
     ] = 0.0
+    reach_limit: Annotated[
+        bool, Field(description="pull goals into the range of the end's distances from the base")
+    ] = False
     clamp: Annotated[
         Literal["re-aim", "plain"], Field(description="what a turn past a limit does")
     ] = "re-aim"

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from limbik.core.chain import AXES, Chain
+from limbik.core.errors import InputError
 from limbik.core.rotation import Array
 
 AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
@@ -45,6 +46,9 @@ class Stage:
 class Continuity:
     """What one solve hands to the next (000 §7.6.3); a plain value, never kept by the solver.
 
+    Get it from `Solution.continuity`, set it with the argument `continuity` of a solve. The
+    properties are views: what is written into them counts in the next solve.
+
     Attributes:
         memory: The numbers as the kernels use them, (n + 4, 3): aim angles of the base and of the
             bend root, bend vector, a flag, angles of the finished pose.
@@ -56,14 +60,33 @@ class Continuity:
         self.memory: Array = memory
 
     @classmethod
+    def fresh(cls, chain: Chain) -> "Continuity":
+        """Return a continuity without a past: a solve with it is a solve without one.
+
+        Args:
+            chain: The chain that will be solved.
+        """
+        return cls(np.zeros((len(chain) + 4, 3)))
+
+    @classmethod
     def from_pose(cls, angles: ArrayLike, bend_reference: int = 1) -> "Continuity":
         """Return the continuity of a pose that no solve has made.
 
         Args:
             angles: (n, 3) HPB [rad].
             bend_reference: Index of the bend reference joint.
+
+        Raises:
+            InputError: The angles are not finite, not of that shape, or have no such joint.
         """
         pose = np.asarray(angles, np.float64)
+        if pose.ndim != 2 or pose.shape[1] != 3 or not np.isfinite(pose).all():
+            raise InputError(f"pose: expected finite angles (n, 3), found shape {pose.shape}")
+        if not 1 <= bend_reference < len(pose):
+            raise InputError(
+                f"bend_reference must be 1 to {len(pose) - 1} for a pose of {len(pose)} joints, "
+                f"not {bend_reference}"
+            )
         memory = np.zeros((len(pose) + 4, 3))
         memory[0] = pose[0]
         memory[1] = pose[bend_reference - 1]
@@ -90,6 +113,10 @@ class Continuity:
     def angles(self) -> Array:
         """Angles of the finished pose, HPB [rad], (n, 3)."""
         return np.asarray(self.memory[4:])
+
+    def reset(self) -> None:
+        """Forget the past, in place."""
+        self.memory[:] = 0.0
 
     def copy(self) -> "Continuity":
         """Return a copy that shares nothing with this one."""

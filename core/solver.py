@@ -15,6 +15,7 @@ from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Body, Options, Plugs, flat_body, flat_options
 from limbik.core.pose import forward_kinematics
+from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
@@ -99,11 +100,11 @@ class Solver:
             The pose with status, distance and the continuity for a next solve.
 
         Raises:
-            InputError: The goal or the offsets are not finite or have another shape.
+            InputError: Goal, offsets or continuity are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        goals = _checked(goal, (3,), "goal").reshape(1, 3)
-        memory = self._fresh.copy() if continuity is None else continuity.memory.copy()
+        goals = self._goals(_checked(goal, (3,), "goal").reshape(1, 3))
+        memory = self._memory(continuity)
         n = len(self.chain)
         stages = 3 + max(self.settings.max_iterations, 0) if trace else 0
         out = _Arrays(1, n, stages)
@@ -147,7 +148,7 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        points = _checked(goals, (None, 3), "goals")
+        points = self._goals(_checked(goals, (None, 3), "goals"))
         fk = self._offsets(fk_offsets)
         out = _Arrays(len(points), len(self.chain), 0)
         workers = min(threads or os.cpu_count() or 1, max(len(points) // THREAD_SHARE, 1))
@@ -186,8 +187,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        points = _checked(goals, (None, 3), "goals")
-        memory = self._fresh.copy() if continuity is None else continuity.memory.copy()
+        points = self._goals(_checked(goals, (None, 3), "goals"))
+        memory = self._memory(continuity)
         out = _Arrays(len(points), len(self.chain), 0)
         self._run(points, self._offsets(fk_offsets), memory, True, out)
         return self._many(points, out, Continuity(memory))
@@ -217,6 +218,24 @@ class Solver:
             bound.name,
             bound.slot,
         )
+
+    def _goals(self, goals: Array) -> Array:
+        """Return goals as the solve gets them: pulled into reach when the settings say so."""
+        return pull_into_reach(self.chain, goals) if self.settings.reach_limit else goals
+
+    def _memory(self, continuity: Continuity | None) -> Array:
+        """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
+        if continuity is None:
+            return self._fresh.copy()
+        memory = np.array(continuity.memory, np.float64, order="C")
+        if memory.shape != self._fresh.shape:
+            raise InputError(
+                f"continuity: it is of a chain of {len(memory) - 4} joints, "
+                f"this one has {len(self.chain)}"
+            )
+        if not np.isfinite(memory).all():
+            raise InputError("continuity: every number must be finite")
+        return memory
 
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:
