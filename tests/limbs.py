@@ -3,6 +3,8 @@
 The strategies mix uniform numbers with nearly degenerate and exactly degenerate ones.
 """
 
+from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -58,9 +60,20 @@ ARM_OPTIONS: dict[str, Any] = {
 """With them the arm bends the way its elbow can."""
 
 
+def plain(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a kernel as the Python function it was, with the kernels it calls alike."""
+    function: Any = getattr(kernel, "py_func", kernel)
+    names = {**function.__globals__}
+    for name in function.__code__.co_names:
+        if hasattr(names.get(name), "py_func"):
+            names[name] = plain(names[name])
+    return FunctionType(function.__code__, names)
+
+
 def solver(chain: Chain, **options: Any) -> Solver:
-    """Return a solver with the built-in strategies only."""
-    return Solver(chain, Settings(**options), REGISTRY)
+    """Return a solver of the bare document's stages, with the built-in strategies only."""
+    bare = {"finish": "none"} if "finish" in Settings.model_fields else {}
+    return Solver(chain, Settings(**(bare | options)), REGISTRY)
 
 
 def reachable(chain: Chain, count: int, seed: int) -> Array:
