@@ -75,7 +75,7 @@ def run_native(slot: str, strategy: Strategy, values: Any, arguments: tuple[Any,
         PluginError: The kernel does not compile.
     """
     from limbik.core import callers
-    from limbik.core.jit import native
+    from limbik.core.compiler import native
 
     given = [_copy(argument) for argument in arguments]
     given[SLOTS[slot].names.index("params")] = flatten(values)

@@ -44,7 +44,7 @@ class Bound:
         Raises:
             PluginError: The kernel does not compile.
         """
-        from limbik.core.jit import native
+        from limbik.core.compiler import native
 
         try:
             return native(self.slot, self.strategy)

@@ -10,8 +10,9 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from limbik.core.jit import entry, invoker
-from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, INITIAL_BEND, ROOT_CONTROL
+from limbik.core.compiler import invoker
+from limbik.core.jit import entry
+from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, FINISH, INITIAL_BEND, ROOT_CONTROL
 
 Array = NDArray[np.float64]
 
@@ -19,6 +20,7 @@ _initial_bend = invoker(INITIAL_BEND)
 _bend_vector = invoker(BEND_VECTOR)
 _root_control = invoker(ROOT_CONTROL)
 _bank_suppression = invoker(BANK_SUPPRESSION)
+_finish = invoker(FINISH)
 
 
 @entry
@@ -82,3 +84,28 @@ def call_bank_suppression(
     """Let a bank suppression change `delta` (3,) [rad]."""
     if not _bank_suppression(address, (target, current, pitch, in_ccd, params_array, delta)):
         delta[:] = nan
+
+
+@entry
+def call_finish(
+    address: int,
+    goal: Array,
+    tolerance: float,
+    length: float,
+    offsets: Array,
+    frozen: Array,
+    base_position: Array,
+    base_rotation: Array,
+    low: Array,
+    high: Array,
+    reachable: int,
+    params_array: Array,
+    angles: Array,
+    scratch: Array,
+    verdict: Array,
+) -> None:
+    """Let a finish move `angles` (n, 3) [rad] to the goal."""
+    chain = (offsets, frozen, base_position, base_rotation, low, high)
+    work = (params_array, angles, scratch, verdict)
+    if not _finish(address, (goal, tolerance, length, *chain, reachable, *work)):
+        angles[:] = nan

@@ -14,7 +14,13 @@ from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 
-SLOT_ORDER: Final = ("initial_bend", "bend_vector", "root_control", "bank_suppression")
+SLOT_ORDER: Final = (
+    "initial_bend",
+    "bend_vector",
+    "root_control",
+    "bank_suppression",
+    "finish",
+)
 """The slots in the order of `Plugs`."""
 
 _AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {

@@ -153,3 +153,31 @@ def limbik_bank_suppressions() -> Iterable[Strategy]:
         ```
     """
     raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_finishes() -> Iterable[Strategy]:
+    """Offer finishes: what ends a solve at its goal after the CCD rounds, within the limits.
+
+    A kernel takes the arguments of `limbik.core.slots.FINISH`: goal, chain, limits, the pose CCD
+    ended with, and rows to work in.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        import limbik
+
+
+        def leave(goal, tolerance, length, offsets, frozen, base_position, base_rotation, low,
+                  high, reachable, params, angles, scratch, verdict):
+            verdict[0] = 0.0
+
+
+        @limbik.hookimpl
+        def limbik_finishes():
+            return [limbik.Strategy("leave", leave, description="Leave CCD's pose as it is.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called

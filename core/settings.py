@@ -74,6 +74,7 @@ class Settings(Model):
     bend_vector: Choice = "manual"
     root_control: Choice = "none"
     bank_suppression: Choice = "none"
+    finish: Choice = "newton"
 
     coefficient_base: Annotated[
         float, Field(ge=0.0, le=2.0, description="bend coefficient [-]")

@@ -6,7 +6,7 @@ arguments. `params` is an instance of the strategy's params class.
 
 The functions that call a strategy from compiled code are offered here too, but loaded on first
 use (they need the compiler): `call_initial_bend`, `call_bend_vector`, `call_root_control`,
-`call_bank_suppression`.
+`call_bank_suppression`, `call_finish`.
 """
 
 from collections.abc import Callable
@@ -20,13 +20,14 @@ from limbik.core.strategy import MAX_PARAMS as MAX_PARAMS
 if TYPE_CHECKING:
     from limbik.core.callers import call_bank_suppression as call_bank_suppression
     from limbik.core.callers import call_bend_vector as call_bend_vector
+    from limbik.core.callers import call_finish as call_finish
     from limbik.core.callers import call_initial_bend as call_initial_bend
     from limbik.core.callers import call_root_control as call_root_control
 
 PASSED_OVER = "none"
 """A slot whose strategy has this name is passed over: a solve does not even call it."""
 
-Kind = Literal["count", "number", "vector", "matrix", "params"]
+Kind = Literal["count", "number", "vector", "matrix", "matrices", "params"]
 Sample = tuple[Any, ...]
 
 
@@ -36,7 +37,8 @@ class Argument:
 
     Attributes:
         name: Name every kernel must give it.
-        kind: `count` (int), `number` (float), `vector` (1-D array), `matrix` (2-D array), `params`.
+        kind: `count` (int), `number` (float), `vector` (1-D array), `matrix` (2-D array),
+            `matrices` (3-D array), `params`.
         meaning: What it holds, with its shape and unit.
         written: Whether the kernel writes into it.
         infinite: Whether infinite values may be written.
@@ -124,6 +126,27 @@ def _bank_samples() -> list[Sample]:
     ]
 
 
+def _finish_samples() -> list[Sample]:
+    """A limb with a hinge near its goal, and a free one that is folded on itself."""
+    bound = np.array([[1.0, 1.0, 1.0], [0.0, 2.0, 0.0], [0.0, 0.0, 0.0]])
+    low = -bound * np.array([[1.0], [0.0], [1.0]])
+    free = np.full((3, 3), np.inf)
+    offsets = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.8]])
+    frozen = np.tile(np.eye(3), (3, 1, 1))
+    angles = np.array([[0.1, -0.3, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.0]])
+    folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
+
+    def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 32))
+        chain = (offsets, frozen, place, base, low, high)
+        return (np.array(goal), 1e-3, 1.8, *chain, 1, None, angles, rows, np.zeros(1))
+
+    return [
+        sample([0.3, 0.5, 1.5], low, bound, angles),
+        sample([0.0, 0.0, 0.2], -free, free, folded),
+    ]
+
+
 _PARAMS = Argument("params", "params", "the strategy's parameters, angles in radians")
 
 INITIAL_BEND = Slot(
@@ -183,8 +206,32 @@ BANK_SUPPRESSION = Slot(
     _bank_samples,
 )
 
+FINISH = Slot(
+    "finish",
+    "limbik_finishes",
+    (
+        Argument("goal", "vector", "(3,) world [length]"),
+        Argument("tolerance", "number", "distance that counts as reached [length]"),
+        Argument("length", "number", "sum of the bone lengths [length]"),
+        Argument("offsets", "matrix", "(n, 3) joint positions in the parent's frame [length]"),
+        Argument("frozen", "matrices", "(n, 3, 3) frozen rotations"),
+        Argument("base_position", "vector", "(3,) world [length]"),
+        Argument("base_rotation", "matrix", "(3, 3) axes of the IK space in the world"),
+        Argument(
+            "low", "matrix", "(n, 3) limits, -inf where free, those of held joints equal [rad]"
+        ),
+        Argument("high", "matrix", "(n, 3) limits, inf where free [rad]"),
+        Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
+        _PARAMS,
+        Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
+        Argument("scratch", "matrix", "(n, 32) IN/OUT to work in, of any content", True),
+        Argument("verdict", "vector", "(1,) OUT: 1 if everything it knows was tried, else 0", True),
+    ),
+    _finish_samples,
+)
+
 SLOTS: dict[str, Slot] = {
-    slot.name: slot for slot in (INITIAL_BEND, BEND_VECTOR, ROOT_CONTROL, BANK_SUPPRESSION)
+    slot.name: slot for slot in (INITIAL_BEND, BEND_VECTOR, ROOT_CONTROL, BANK_SUPPRESSION, FINISH)
 }
 
 

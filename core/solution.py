@@ -14,13 +14,18 @@ AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
 
 
 class Status(IntEnum):
-    """How a solve ended.
+    """How a solve ended (M-01).
 
-    The kernels return these numbers; `label` is the word for people.
+    `REACHED`: the end is within the tolerance of the goal. `OUT_OF_REACH`: no fold of the bones
+    spans the distance, limits or not. `BLOCKED`: the bones would, the limits do not let them.
+    `STOPPED`: the rounds ran out and nothing was proved. The kernels return these numbers;
+    `label` is the word for people.
     """
 
     REACHED = 0
     STOPPED = 1
+    OUT_OF_REACH = 2
+    BLOCKED = 3
 
     @property
     def label(self) -> str:

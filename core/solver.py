@@ -106,7 +106,7 @@ class Solver:
         goals = self._goals(_checked(goal, (3,), "goal").reshape(1, 3))
         memory = self._memory(continuity)
         n = len(self.chain)
-        stages = 3 + max(self.settings.max_iterations, 0) if trace else 0
+        stages = 4 + max(self.settings.max_iterations, 0) if trace else 0
         out = _Arrays(1, n, stages)
         count = self._run(goals, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
@@ -261,7 +261,8 @@ class Solver:
         )
 
     def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
-        names = ["initial", "aim", "bend", *(f"round {k + 1}" for k in range(max(iterations, 0)))]
+        rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
+        names = ["initial", "aim", "bend", *rounds, "finish"]
         positions, _ = forward_kinematics(self.chain, angles)
         return tuple(
             Stage(name, pose, places)

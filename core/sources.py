@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core import cache
+from limbik.core.jit import Entry
 
 # The compiler has its own versions of these packages' functions.
 _KNOWN_TO_COMPILER = {"numpy", "numba", "math", "builtins"}
@@ -18,7 +19,9 @@ _PACKAGE = __name__.partition(".")[0]
 
 
 def is_foreign(value: Any) -> bool:
-    """Whether a value is a plain Python function the compiler does not know yet."""
+    """Whether a value is a plain Python function or an entry the compiler does not know yet."""
+    if isinstance(value, Entry):
+        return True
     return isinstance(value, FunctionType) and _top(value) not in _KNOWN_TO_COMPILER
 
 
@@ -90,7 +93,8 @@ def reached(function: FunctionType) -> list[FunctionType]:
             continue
         found[id(here)] = here
         for _, value in references(here):
-            plain = getattr(value, "py_func", value)
+            plain: Any = value.function if isinstance(value, Entry) else value
+            plain = getattr(plain, "py_func", plain)
             if is_foreign(plain):
                 waiting.append(plain)
     return list(found.values())

@@ -52,7 +52,42 @@ def bank_suppression(
     kernel(target, current, pitch, in_ccd, rebuild(params), delta)
 
 
+def finish(
+    goal: Array,
+    tolerance: float,
+    length: float,
+    offsets: Array,
+    frozen: Array,
+    base_position: Array,
+    base_rotation: Array,
+    low: Array,
+    high: Array,
+    reachable: int,
+    params: Array,
+    angles: Array,
+    scratch: Array,
+    verdict: Array,
+) -> None:
+    """Enter a finish."""
+    kernel(
+        goal,
+        tolerance,
+        length,
+        offsets,
+        frozen,
+        base_position,
+        base_rotation,
+        low,
+        high,
+        reachable,
+        rebuild(params),
+        angles,
+        scratch,
+        verdict,
+    )
+
+
 TEMPLATES: dict[str, Any] = {
     template.__name__: template
-    for template in (initial_bend, bend_vector, root_control, bank_suppression)
+    for template in (initial_bend, bend_vector, root_control, bank_suppression, finish)
 }

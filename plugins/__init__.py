@@ -10,5 +10,7 @@ BUILT_IN = (
     "limbik.plugins.root_control.prefer_flip",
     "limbik.plugins.bank_suppression.none",
     "limbik.plugins.bank_suppression.threshold",
+    "limbik.plugins.finish.none",
+    "limbik.plugins.finish.newton",
 )
 """Modules the registry loads first; a new one is added here."""

@@ -64,8 +64,8 @@ def test_no_file_is_longer_than_400_lines_or_imports_relatively(path: Path) -> N
 
 
 @pytest.mark.parametrize("path", [*inside("core"), *inside("plugins")], ids=named)
-def test_only_the_jit_module_imports_the_compiler(path: Path) -> None:
-    if path != ROOT / "core" / "jit.py":
+def test_only_one_module_imports_numba(path: Path) -> None:
+    if path != ROOT / "core" / "compiler.py":
         assert not {name for name in imports(path) if name.split(".")[0] in COMPILERS}
 
 

@@ -85,6 +85,7 @@ def case_settings(case: Case, step: Case, stage: str, first: bool) -> Settings:
         "bend_vector": _bend_vector(vector),
         "root_control": _root_control(bend["root_control"]),
         "bank_suppression": _bank_suppression(options),
+        "finish": "none",
         "fk_strength": float(step["fk_strength"]),
         # In the global mode the source's "fixed" means: make the vector perpendicular (3D A-13).
         "hold_bend_vector": vector["fixed"] and vector["method"] == "manual" and not first,

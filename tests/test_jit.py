@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from limbik.core import cache, jit, sources
+from limbik.core import cache, compiler, jit, sources
 from limbik.core.binding import Bound
 from limbik.core.callers import call_bank_suppression, call_initial_bend, call_root_control
 from limbik.core.errors import PluginError
@@ -82,7 +82,7 @@ def odd(lengths: Array, reach_ratio: float, weights: Array, params: Any, angles:
 def bend(strategy: Strategy, ratio: float = 0.5, params: Any = None) -> Array:
     lengths, angles = np.arange(6.0), np.full(6, np.nan)
     values = flatten(strategy.params() if params is None else params)
-    address = jit.native("initial_bend", strategy)
+    address = compiler.native("initial_bend", strategy)
     call_initial_bend(address, lengths, ratio, lengths, values, angles)
     return angles
 
@@ -114,7 +114,7 @@ def test_raising_strategy_fills_its_result_with_nan_and_nothing_else_happens() -
     assert bend(strategy, 0.4)[0] == 1.0
     assert np.isnan(bend(strategy, 0.6)).all()
     low, high = -np.ones((2, 3)), np.ones((2, 3))
-    address = jit.native("root_control", Strategy("failing", failing_control))
+    address = compiler.native("root_control", Strategy("failing", failing_control))
     call_root_control(address, 0, 0, low.copy(), np.zeros(16), low, high)
     assert np.isnan(low).all()
     assert np.isnan(high).all()
@@ -131,7 +131,7 @@ def test_kernel_that_does_not_compile_is_a_plugin_error_naming_its_plugin() -> N
 @compiled_only
 def test_compilers_report_is_cut_down_to_complaint_and_line() -> None:
     with pytest.raises(PluginError) as caught:
-        jit.native("initial_bend", Strategy("odd-again", odd))
+        compiler.native("initial_bend", Strategy("odd-again", odd))
     assert re.search(r"no_such_thing.*\(File .*test_jit\.py\", line \d+\)$", str(caught.value))
     assert "During" not in str(caught.value)
 
@@ -155,7 +155,7 @@ def test_threads_compile_and_call_at_once_with_equal_results() -> None:
 
 def test_address_of_a_strategy_stays_the_same() -> None:
     strategy = Strategy("stay", failing)
-    assert jit.native("initial_bend", strategy) == jit.native("initial_bend", strategy)
+    assert compiler.native("initial_bend", strategy) == compiler.native("initial_bend", strategy)
 
 
 def test_cache_folders_unused_for_a_month_are_removed_and_no_others(tmp_path: Path) -> None:
@@ -221,16 +221,16 @@ def scaled(value):
 RUN = """
 import sys
 import numpy as np
-from limbik.core import jit
+from limbik.core import compiler, jit
 from limbik.core.callers import call_initial_bend
 from limbik.core.strategy import flatten
 from spiral import STRATEGY, P
 
 before = jit.is_compiled_before()
-address = jit.native("initial_bend", STRATEGY)
+address = compiler.native("initial_bend", STRATEGY)
 angles, lengths = np.zeros(2), np.ones(2)
 call_initial_bend(address, lengths, 0.5, lengths, flatten(P()), angles)
-(entry,) = jit._NATIVE.values()
+(entry,) = compiler._NATIVE.values()
 print(angles[0], sum(entry[1][0].stats.cache_hits.values()), before)
 """
 

@@ -61,6 +61,7 @@ def test_built_in_names_are_those_of_the_document() -> None:
         "bend_vector": ["auto", "global", "manual"],
         "root_control": ["none", "prefer-flip", "suppress-flip"],
         "bank_suppression": ["none", "threshold"],
+        "finish": ["newton", "none"],
     }
     assert registry.broken == ()
 

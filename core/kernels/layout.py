@@ -81,8 +81,9 @@ class Plugs(NamedTuple):
     bend_vector: int
     root_control: int
     bank_suppression: int
+    finish: int
     params: Array
-    """One row a slot in the order above, (4, 16)."""
+    """One row a slot in the order above, (5, 16)."""
 
 
 class Pose(NamedTuple):
@@ -116,6 +117,10 @@ class Pose(NamedTuple):
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
     scratch: Array
     """Arguments of strategies, (8, 3)."""
+    finish_rows: Array
+    """What a finish works in, (n, 32)."""
+    verdict: Array
+    """What a finish says, (1,)."""
 
 
 class Bend(NamedTuple):

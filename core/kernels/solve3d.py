@@ -6,6 +6,7 @@ from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
 from limbik.core.kernels.bend_vector import find_bend_vector, usable
 from limbik.core.kernels.ccd import ccd_round
+from limbik.core.kernels.finish import end_solve, status_of
 from limbik.core.kernels.frames import (
     base_rotation,
     clamp_angles,
@@ -39,9 +40,7 @@ from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 from limbik.core.slots import call_root_control
 
-# Status numbers of `limbik.core.solution.Status`; from FAILED on, one a slot in the order of Plugs.
-REACHED = 0
-STOPPED = 1
+# From this status number on, a strategy failed: one a slot in the order of Plugs.
 FAILED = 10
 
 # Columns of a solve's numbers; the bend vector takes three.
@@ -123,6 +122,7 @@ def _solve(
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
     bend_world = (0.0, 0.0, 0.0)
+    pose.verdict[0] = 0.0
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
@@ -147,7 +147,11 @@ def _solve(
                     iterations, stages = _rounds(goal, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
-    _finish_pose(body, options, fk, memory, pose)
+            if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
+                if not end_solve(goal, body, options, plugs, pose):
+                    failed = FAILED + 4
+                stages = _record(stages, pose, trace)
+    _settle_pose(body, options, fk, memory, pose)
     _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
     return stages
 
@@ -306,13 +310,16 @@ def _record(stages: int, pose: Pose, trace: Array) -> int:
     if stages >= trace.shape[0]:
         return stages
     for joint in range(pose.angles.shape[0]):
-        renew_angles(joint, pose)
-    _copy(pose.angles, trace[stages])
+        angles = vector(pose.angles, joint)
+        if pose.free[joint]:
+            # Read only: what is traced must not change what is solved.
+            angles = nearest_form(matrix_to_hpb(matrix(pose.relative, joint), angles[2]), angles)
+        store_vector(angles, trace[stages], joint)
     return stages + 1
 
 
 @kernel
-def _finish_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
+def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
     """Choose the angles' forms, mix in FK, renew the frames from the angles, keep the pose."""
     known = memory[3, 0] > 0.0
     mix = 1.0 if options.full_fk else options.fk_mix
@@ -348,7 +355,7 @@ def _write_numbers(
     if failed != 0:
         numbers[STATUS] = failed
     else:
-        numbers[STATUS] = REACHED if distance < options.tolerance else STOPPED
+        numbers[STATUS] = status_of(goal, distance, options, pose)
     numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = bend_world
     local = rotate_back(matrix(pose.world, options.root), bend_world)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])

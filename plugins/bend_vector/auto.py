@@ -4,7 +4,7 @@ Source: 000 §6.3(2)(B), (11)(E), §7.6; readings 3D A-20, A-21, A-41.
 """
 
 from collections.abc import Iterable
-from math import atan2, cos, sin, sqrt
+from math import cos, sin
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -12,6 +12,17 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from limbik.core.hooks import hookimpl
+from limbik.core.kernels.rotation import (
+    angle_between,
+    cross,
+    dot,
+    has_direction,
+    norm,
+    scale,
+    subtract,
+    turned,
+    unit,
+)
 from limbik.core.strategy import Degrees, Strategy
 
 Array = NDArray[np.float64]
@@ -36,44 +47,6 @@ class Auto(NamedTuple):
     ] = 0.1
 
 
-def side_of_miss(aim: Array, end_offset: Array, side: Array) -> float:
-    """Write the part of the offset across the aim, as a unit vector.
-
-    Returns:
-        The length of that part [length]; where it is 0, `side` is left alone.
-    """
-    along = end_offset[0] * aim[0] + end_offset[1] * aim[1] + end_offset[2] * aim[2]
-    x = end_offset[0] - along * aim[0]
-    y = end_offset[1] - along * aim[1]
-    z = end_offset[2] - along * aim[2]
-    length = sqrt(x * x + y * y + z * z)
-    if length > 0.0:
-        side[0], side[1], side[2] = x / length, y / length, z / length
-    return length
-
-
-def turn_toward(start: Array, goal: Array, strength: float, spare_axis: Array) -> None:
-    """Turn the unit vector `start` in place toward `goal`, by a share of the angle between them.
-
-    `spare_axis` is turned about where the two are opposite.
-    """
-    x = start[1] * goal[2] - start[2] * goal[1]
-    y = start[2] * goal[0] - start[0] * goal[2]
-    z = start[0] * goal[1] - start[1] * goal[0]
-    sine = sqrt(x * x + y * y + z * z)
-    turn = strength * atan2(sine, start[0] * goal[0] + start[1] * goal[1] + start[2] * goal[2])
-    if turn < SMALLEST_TURN:
-        return
-    if sine > 1e-12:
-        x, y, z = x / sine, y / sine, z / sine
-    else:
-        x, y, z = spare_axis[0], spare_axis[1], spare_axis[2]
-    a, b, c = start[0], start[1], start[2]
-    start[0] = cos(turn) * a + sin(turn) * (y * c - z * b)
-    start[1] = cos(turn) * b + sin(turn) * (z * a - x * c)
-    start[2] = cos(turn) * c + sin(turn) * (x * b - y * a)
-
-
 def auto(
     frame: Array,
     aim: Array,
@@ -91,13 +64,22 @@ def auto(
     `strength` times the angle between them.
     """
     x, y = sin(params.angle), cos(params.angle)
-    for axis in range(3):
-        out[axis] = frame[axis, 0] * x + frame[axis, 1] * y
-    if params.sensitivity <= 0.0:
-        return
-    side = np.zeros(3)
-    if side_of_miss(aim, end_offset, side) >= params.sensitivity:
-        turn_toward(out, side, params.strength, aim)
+    default = (
+        frame[0, 0] * x + frame[0, 1] * y,
+        frame[1, 0] * x + frame[1, 1] * y,
+        frame[2, 0] * x + frame[2, 1] * y,
+    )
+    line = (aim[0], aim[1], aim[2])
+    offset = (end_offset[0], end_offset[1], end_offset[2])
+    miss = subtract(offset, scale(line, dot(offset, line)))
+    found = default
+    if 0.0 < params.sensitivity <= norm(miss):
+        angle = params.strength * angle_between(default, miss)
+        if angle >= SMALLEST_TURN:
+            about = unit(cross(default, miss))
+            # Opposite: turn about the aim.
+            found = turned(default, about if has_direction(about) else line, angle)
+    out[0], out[1], out[2] = found
 
 
 def check(params: Auto) -> None:

@@ -191,6 +191,7 @@ def test_plugins_as_json_has_ranges_defaults_and_units(run: Run) -> None:
         "bend_vector",
         "root_control",
         "bank_suppression",
+        "finish",
     ]
     assert (angle["default"], angle["ge"], angle["le"], angle["unit"]) == (
         0.0,

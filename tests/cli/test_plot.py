@@ -27,6 +27,7 @@ def test_a_picture_names_goals_stages_and_joints_at_limits(
     import matplotlib as mpl
 
     text = scene_text.replace("[-145, 0]", "[-30, 0]").replace("[5, 10, 40]", "[0, 0, 20]")
+    text = text.replace("max_iterations: 100", "max_iterations: 100, finish: none")
     (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
     with mpl.rc_context({"svg.fonttype": "none"}):  # text stays text
         run("solve", "scene.yaml", "--plot", "p.svg")

@@ -1,0 +1,1 @@
+"""Finishes: what ends a solve at the goal after CCD, or proves why not."""
