@@ -15,6 +15,7 @@ from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
 from limbik.core.settings import Settings
+from limbik.core.solution import Solution
 from limbik.core.solver import Solver
 
 Array = NDArray[np.float64]
@@ -74,6 +75,27 @@ def solver(chain: Chain, **options: Any) -> Solver:
     """Return a solver of the bare document's stages, with the built-in strategies only."""
     bare = {"finish": "none"} if "finish" in Settings.model_fields else {}
     return Solver(chain, Settings(**(bare | options)), REGISTRY)
+
+
+LIMB = ball(20.0, 20.0, 20.0)
+GOAL = np.array([12.0, 9.0, 30.0])
+
+
+def solve(chain: Chain = LIMB, goal: Any = GOAL, fk: Any = None, **options: Any) -> Solution:
+    return solver(chain, **options).solve(goal, fk_offsets=fk)
+
+
+def stages(
+    chain: Chain = LIMB, goal: Any = GOAL, fk: Any = None, **options: Any
+) -> dict[str, Array]:
+    """Return angles [deg] by stage."""
+    found = solver(chain, **options).solve(goal, fk_offsets=fk, trace=True)
+    assert found.trace is not None
+    return {stage.name: np.degrees(stage.angles) for stage in found.trace}
+
+
+def rotations(angles: Array, chain: Chain = LIMB) -> Array:
+    return forward_kinematics(chain, np.radians(angles))[1]
 
 
 def reachable(chain: Chain, count: int, seed: int) -> Array:
