@@ -36,7 +36,7 @@ class Newton(NamedTuple):
         float, Field(gt=0.0, le=1e-2, description="distance aimed at, over the chain length [-]")
     ] = 1e-9
     steps: Annotated[int, Field(ge=1, le=1000, description="most steps of a descent")] = 40
-    retries: Annotated[int, Field(ge=0, le=10000, description="most other starts")] = 60
+    retries: Annotated[int, Field(ge=0, le=10000, description="most other starts")] = 160
 
 
 def newton(
