@@ -36,6 +36,7 @@ from limbik.core.kernels.rotation import (
     unit,
     vector,
 )
+from limbik.core.kernels.soft import soft_distance, soft_goal
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 from limbik.core.slots import call_root_control
@@ -141,10 +142,12 @@ def _solve(
                 _twist_aim(bend, body, options, fk, pose)
             stages = _record(stages, pose, trace)
             if options.max_iterations > -1:
-                if find_bend_angles(distance, body, options, plugs, pose):
+                pursued = soft_goal(goal, distance, options, pose)
+                nearer = soft_distance(distance, options.root_to_end, options.soft_zone)
+                if find_bend_angles(nearer, body, options, plugs, pose):
                     bend_pose(bend, body, options, plugs, fk, pose)
                     stages = _record(stages, pose, trace)
-                    iterations, stages = _rounds(goal, body, options, plugs, pose, trace, stages)
+                    iterations, stages = _rounds(pursued, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
             if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
