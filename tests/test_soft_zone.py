@@ -36,7 +36,7 @@ def soft(zone: float, bend: str = "solved-arc", scale: float = 1.0) -> Solver:
 
 def radial(distances: Array) -> Array:
     way = np.array([0.36, -0.48, 0.8])
-    return distances[:, None] * way
+    return np.asarray(np.multiply.outer(distances, way))
 
 
 def out_and_back() -> Array:

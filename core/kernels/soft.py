@@ -17,7 +17,7 @@ def soft_distance(distance: float, reach: float, zone: float) -> float:
     """Return the distance to pursue instead of a wanted one [length].
 
     Up to the zone's start a = (1 - zone) reach it is the same; from there on
-    a + w (1 - exp(-(distance - a) / w)) with the zone's width w. The slope is 1 at a and falls to 0.
+    a + w (1 - exp(-(distance - a) / w)) where w is the zone's width: slope 1 at a, then falling.
 
     Args:
         distance: Root to goal [length].
