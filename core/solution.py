@@ -18,8 +18,8 @@ class Status(IntEnum):
 
     `REACHED`: the end is within the tolerance of the goal. `OUT_OF_REACH`: no fold of the bones
     spans the distance, limits or not. `BLOCKED`: the bones would, the limits do not let them.
-    `STOPPED`: the rounds ran out and nothing was proved. The kernels return these numbers;
-    `label` is the word for people.
+    `STOPPED`: the rounds ran out and nothing was proved, or the soft zone held the end back. The
+    kernels return these numbers; `label` is the word for people.
     """
 
     REACHED = 0

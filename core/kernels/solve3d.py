@@ -141,8 +141,8 @@ def _solve(
             if options.max_iterations == -1:
                 _twist_aim(bend, body, options, fk, pose)
             stages = _record(stages, pose, trace)
+            pursued = soft_goal(goal, distance, options, pose)
             if options.max_iterations > -1:
-                pursued = soft_goal(goal, distance, options, pose)
                 nearer = soft_distance(distance, options.root_to_end, options.soft_zone)
                 if find_bend_angles(nearer, body, options, plugs, pose):
                     bend_pose(bend, body, options, plugs, fk, pose)
@@ -151,7 +151,7 @@ def _solve(
                 else:
                     failed = FAILED
             if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
-                if not end_solve(goal, body, options, plugs, pose):
+                if not end_solve(pursued, body, options, plugs, pose):
                     failed = FAILED + 4
                 stages = _record(stages, pose, trace)
     _settle_pose(body, options, fk, memory, pose)

@@ -23,7 +23,12 @@ def limit_error(run: Run) -> float:
     best: Array = np.full(len(run.goals), np.inf)
     for start in STARTS:
         given: dict[str, Any] = run.settings.model_dump(exclude_unset=True)
-        given |= {"initial_bend": start, "max_iterations": ROUNDS, "smoothing": 1.0}
+        given |= {
+            "initial_bend": start,
+            "max_iterations": ROUNDS,
+            "smoothing": 1.0,
+            "finish": "newton",
+        }
         given |= {"tolerance": min(run.settings.tolerance, 1e-6 * run.reach)}
         solver = Solver(run.chain, Settings(**given), run.solver.registry)
         found = solver.solve_many(run.goals, fk_offsets=run.fk_offsets)
