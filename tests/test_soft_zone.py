@@ -107,6 +107,8 @@ def test_status_and_distance_are_those_of_the_real_goal() -> None:
     statuses = np.asarray(solution.status)
     assert statuses[:2].tolist() == [Status.REACHED, Status.REACHED]
     assert not (statuses[2:] == Status.REACHED).any()
+    assert [Status(status).label for status in statuses[2:]] == ["stopped", "stopped"]
+    assert soft(0.04).solve(radial(np.array([1.1]))[0]).status is Status.OUT_OF_REACH
     ends = np.linalg.norm(solution.positions[:, -1] - solution.goal, axis=1)
     assert solution.distance == pytest.approx(ends, abs=1e-12)
     assert ends[2] > 1e-3
