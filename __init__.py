@@ -9,6 +9,10 @@ if TYPE_CHECKING:
     from limbik.core.controller import Controller as Controller
     from limbik.core.errors import LimbikError as LimbikError
     from limbik.core.hooks import hookimpl as hookimpl
+    from limbik.core.match import Match as Match
+    from limbik.core.match import convert_bend_vector as convert_bend_vector
+    from limbik.core.match import match_fk as match_fk
+    from limbik.core.match import match_ik as match_ik
     from limbik.core.registry import Registry as Registry
     from limbik.core.settings import Settings as Settings
     from limbik.core.solution import Continuity as Continuity
@@ -27,13 +31,17 @@ _PUBLIC = {
     "Controller": "limbik.core.controller",
     "Joint": "limbik.core.chain",
     "LimbikError": "limbik.core.errors",
+    "Match": "limbik.core.match",
     "Registry": "limbik.core.registry",
     "Settings": "limbik.core.settings",
     "Solution": "limbik.core.solution",
     "Solver": "limbik.core.solver",
     "Status": "limbik.core.solution",
     "Strategy": "limbik.core.strategy",
+    "convert_bend_vector": "limbik.core.match",
     "hookimpl": "limbik.core.hooks",
+    "match_fk": "limbik.core.match",
+    "match_ik": "limbik.core.match",
 }
 
 

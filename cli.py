@@ -152,6 +152,34 @@ def init(
 
 
 @app.command()
+def judge(scene: SceneFile, as_json: AsJson = False) -> None:
+    """Measure how natural the motion along a scene's goals is.
+
+    Exit status 1 means: a threshold of the scene's `judge` section is exceeded.
+
+    limbik judge walk.yaml
+
+    limbik judge walk.yaml --json
+    """
+    with reported(as_json):
+        from limbik.core.registry import Registry
+        from limbik.core.scene import read_scene
+        from limbik.plugins.judging import report
+        from limbik.plugins.output.records import to_json
+
+        registry = Registry()
+        read = read_scene(scene, registry)
+        _announce_compiling()
+        verdicts = report.judge(read, registry)
+        if as_json:
+            typer.echo(to_json(report.judge_record(read, verdicts)))
+        else:
+            report.print_verdicts(verdicts)
+        if not report.are_passed(verdicts):
+            raise SystemExit(1)
+
+
+@app.command()
 def plugins(as_json: AsJson = False) -> None:
     """List plug-ins and every strategy with parameters, defaults, ranges and units.
 
@@ -174,12 +202,17 @@ def plugins(as_json: AsJson = False) -> None:
 
 
 def _solve_all(scene: "Scene", registry: "Registry", trace: bool) -> list["Solution"]:
-    from limbik.core.jit import is_compiled_before
     from limbik.core.solving import solve_scene
+
+    _announce_compiling()
+    return solve_scene(scene, registry, trace)
+
+
+def _announce_compiling() -> None:
+    from limbik.core.jit import is_compiled_before
 
     if not is_compiled_before():
         typer.echo("limbik: compiling machine code, once for this version ...", err=True)
-    return solve_scene(scene, registry, trace)
 
 
 def main() -> None:

@@ -117,6 +117,8 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         hold_bend=settings.hold_bend_vector,
         bend_smoothing=radians(settings.bend_smoothing),
         plain_clamp=settings.clamp == "plain",
+        from_current=settings.start == "current",
+        soft_zone=settings.soft_zone,
         fk_strength=settings.fk_strength,
         fk_mix=settings.fk_mix,
     )

@@ -11,6 +11,7 @@ chain:
 options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, keys of Settings
 fk: {elbow: [0, 15, 0]}        # optional FK offsets
 follow: false                  # optional: solve the goals as a path
+judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
 goals:                         # a list, or {csv: goals.csv}
   - {name: mouth, position: [1, 2, 3]}
 ```
@@ -33,7 +34,7 @@ from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortl
 from limbik.core.goals import read_goals
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.scenemodel import CsvModel, JointModel, SceneModel
+from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS
 from limbik.core.validation import validation_faults
@@ -57,6 +58,7 @@ class Scene:
         goals: World positions, (m, 3) [length].
         follow: Whether the goals are a path, each solved from the pose before it.
         document: The file with its positions, to point at a place later.
+        judge: Rate and thresholds for judging the motion; None where the scene has none.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Scene:
     goals: Array
     follow: bool
     document: Document
+    judge: JudgeModel | None = None
 
 
 def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
@@ -119,7 +122,9 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
     offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
-    return Scene(title, chain, model.options, offsets, names, goals, model.follow, document)
+    return Scene(
+        title, chain, model.options, offsets, names, goals, model.follow, document, model.judge
+    )
 
 
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:

@@ -109,6 +109,16 @@ class CsvModel(Model):
     csv: Annotated[str, Field(min_length=1, description="path relative to the scene")]
 
 
+class JudgeModel(Model):
+    """What a motion is judged by: its goals are a path at a steady rate."""
+
+    rate: Annotated[float, Field(gt=0.0, le=100_000.0, description="goals a second [1/s]")] = 60.0
+    max: Annotated[
+        dict[str, Annotated[float, Field(ge=0.0)]],
+        Field(default_factory=dict, description="largest value allowed, by metric"),
+    ]
+
+
 def _goals_form(value: Any) -> str:
     return "csv" if isinstance(value, dict) else "list"
 
@@ -128,6 +138,7 @@ class SceneModel(Model):
     follow: Annotated[
         bool, Field(description="solve the goals as a path, each from the pose before it")
     ] = False
+    judge: Annotated[JudgeModel | None, Field(description="thresholds for `limbik judge`")] = None
     goals: Annotated[
         Annotated[list[GoalModel], Tag("list")] | Annotated[CsvModel, Tag("csv")],
         Discriminator(_goals_form),

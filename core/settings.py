@@ -118,6 +118,14 @@ class Settings(Model):
     clamp: Annotated[
         Literal["re-aim", "plain"], Field(description="what a turn past a limit does")
     ] = "re-aim"
+    start: Annotated[
+        Literal["bend", "current"],
+        Field(description="CCD starts from the bend pose or from the pose of the solve before"),
+    ] = "bend"
+    soft_zone: Annotated[
+        float,
+        Field(ge=0.0, le=0.5, description="last part of the reach, pulled in smoothly; 0 = off"),
+    ] = 0.0
     fk_strength: Annotated[
         float, Field(ge=0.0, le=1.0, description="strength of FK offsets [-]")
     ] = 1.0

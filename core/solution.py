@@ -18,8 +18,8 @@ class Status(IntEnum):
 
     `REACHED`: the end is within the tolerance of the goal. `OUT_OF_REACH`: no fold of the bones
     spans the distance, limits or not. `BLOCKED`: the bones would, the limits do not let them.
-    `STOPPED`: the rounds ran out and nothing was proved. The kernels return these numbers;
-    `label` is the word for people.
+    `STOPPED`: the rounds ran out and nothing was proved, or the soft zone held the end back. The
+    kernels return these numbers; `label` is the word for people.
     """
 
     REACHED = 0
@@ -139,8 +139,9 @@ class Solution:
         positions: World positions of the joints, (n, 3) [length], or (m, n, 3).
         rotations: World rotations, (n, 3, 3), or (m, n, 3, 3).
         iterations: CCD rounds used, or the stage (-2, -1, 0) that was asked for; (m,) for many.
-        distance: End to goal [length]; (m,) for many.
-        status: `Status`; (m,) of its numbers for many.
+        distance: End to goal [length]; (m,) for many. Always the goal that was asked for, also in
+            the soft zone, where the stages pursue a nearer one.
+        status: `Status`, by that distance; (m,) of its numbers for many.
         bend_vector: Unit vector in the world toward which the chain bends, (3,) or (m, 3).
         bend_angle: Bend direction: angle about the bend root's Z from its Y axis [rad] (E-14).
         continuity: What the next solve may be given; None for many.

@@ -2,6 +2,9 @@
 
 BUILT_IN = (
     "limbik.plugins.initial_bend.nth_root",
+    "limbik.plugins.initial_bend.solved_arc",
+    "limbik.plugins.initial_bend.uniform_arc",
+    "limbik.plugins.initial_bend.two_bone",
     "limbik.plugins.bend_vector.manual",
     "limbik.plugins.bend_vector.auto",
     "limbik.plugins.bend_vector.global_",

@@ -70,6 +70,10 @@ class Options(NamedTuple):
     hold_bend: bool
     bend_smoothing: float
     plain_clamp: bool
+    from_current: bool
+    """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
+    soft_zone: float
+    """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
     fk_strength: float
     fk_mix: float
 

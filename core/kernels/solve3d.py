@@ -36,6 +36,7 @@ from limbik.core.kernels.rotation import (
     unit,
     vector,
 )
+from limbik.core.kernels.soft import soft_distance, soft_goal
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 from limbik.core.slots import call_root_control
@@ -140,15 +141,19 @@ def _solve(
             if options.max_iterations == -1:
                 _twist_aim(bend, body, options, fk, pose)
             stages = _record(stages, pose, trace)
+            pursued = soft_goal(goal, distance, options, pose)
             if options.max_iterations > -1:
-                if find_bend_angles(distance, body, options, plugs, pose):
+                nearer = soft_distance(distance, options.root_to_end, options.soft_zone)
+                if find_bend_angles(nearer, body, options, plugs, pose):
                     bend_pose(bend, body, options, plugs, fk, pose)
+                    if options.from_current and options.max_iterations > 0:
+                        _continue_pose(body, memory, pose)
                     stages = _record(stages, pose, trace)
-                    iterations, stages = _rounds(goal, body, options, plugs, pose, trace, stages)
+                    iterations, stages = _rounds(pursued, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
             if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
-                if not end_solve(goal, body, options, plugs, pose):
+                if not end_solve(pursued, body, options, plugs, pose):
                     failed = FAILED + 4
                 stages = _record(stages, pose, trace)
     _settle_pose(body, options, fk, memory, pose)
@@ -264,6 +269,19 @@ def _twist_aim(bend: Bend, body: Body, options: Options, fk: Array, pose: Pose) 
     if options.aim_twist:
         turn_reference_axis(bend, body, options, fk, pose)
         place_from(options.root + 1, body, pose)
+
+
+@kernel
+def _continue_pose(body: Body, memory: Array, pose: Pose) -> None:
+    """Put the pose of the solve before, if there was one, in place of the bend pose (F-02).
+
+    It is pulled into this solve's limits, which a root control may have changed.
+    """
+    if not memory[3, 0] > 0.0:
+        return
+    for joint in range(body.offsets.shape[0]):
+        set_angles(joint, clamp_angles(joint, vector(memory, joint + 4), pose), pose)
+    place_from(0, body, pose)
 
 
 @kernel

@@ -24,7 +24,7 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
 
     A terminal gets the joints it has room for; a file or a pipe gets all.
     """
-    console = _console()
+    console = new_console()
     room = console.width - max(map(len, scene.goal_names)) - _FIXED_WIDTH
     joints = _joint_columns(scene, solutions, 1)
     shown, left_out = _fitting(joints, room)
@@ -92,7 +92,7 @@ def print_plugins(record: dict[str, Any]) -> None:
     Args:
         record: As `limbik.plugins.output.listing.plugin_record` gives it.
     """
-    console = _console()
+    console = new_console()
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for title in ("plug-in", "version", "origin", "status"):
         table.add_column(title)
@@ -126,6 +126,7 @@ class _Console(Console):
         raise BrokenPipeError
 
 
-def _console() -> Console:
+def new_console() -> Console:
+    """A console that writes plain, unfolded lines off a terminal."""
     console = _Console(highlight=False)
     return console if console.is_terminal else _Console(highlight=False, width=_WIDE)

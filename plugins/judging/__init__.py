@@ -1,0 +1,1 @@
+"""How natural a motion is, in numbers: one idea a file, put together in `catalogue`."""

@@ -1,0 +1,36 @@
+"""How evenly a limb of many bones curves."""
+
+import numpy as np
+
+from limbik.core.rotation import Array
+from limbik.plugins.judging.run import NotJudged, Run
+
+BENT = np.radians(5.0)  # less total bend says nothing about its share [rad]
+
+
+def bends(run: Run) -> Array:
+    """Bend of every joint inside the limb, (m, joints) [rad], where it is bent at all."""
+    root = run.settings.bend_reference - 1
+    bones = np.diff(run.solution.positions[:, root:], axis=1)
+    sizes = np.linalg.norm(bones, axis=2)
+    bones = bones[:, sizes[0] > 0.0] / sizes[:, sizes[0] > 0.0, None]
+    if bones.shape[1] < 3:
+        raise NotJudged("a curve needs at least three bones")
+    sine = np.linalg.norm(np.cross(bones[:, :-1], bones[:, 1:]), axis=2)
+    found = np.arctan2(sine, (bones[:, :-1] * bones[:, 1:]).sum(2))
+    found = found[found.sum(axis=1) > BENT]
+    if not len(found):
+        raise NotJudged("the limb is never bent")
+    return np.asarray(found)
+
+
+def curl(run: Run) -> float:
+    """Share of the last joint in the whole bend times the number of joints; 1 = even [-]."""
+    found = bends(run)
+    return float((found[:, -1] / found.mean(axis=1)).max())
+
+
+def unevenness(run: Run) -> float:
+    """Standard deviation of the joints' bends over their mean [-]."""
+    found = bends(run)
+    return float((found.std(axis=1) / found.mean(axis=1)).max())

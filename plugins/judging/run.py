@@ -1,0 +1,116 @@
+"""A scene's goals, solved, with everything the measures look at."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from limbik.core.chain import Chain
+from limbik.core.registry import Registry
+from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.scene import Scene
+from limbik.core.settings import Settings
+from limbik.core.solution import Solution
+from limbik.core.solver import Solver
+
+RATE = 60.0  # goals a second where a scene gives no rate
+
+
+class NotJudged(Exception):
+    """A measure says nothing about this scene; the message tells why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A solved path of m goals of a chain of n joints.
+
+    Attributes:
+        solver: What solved it; measures that replay the path use it again.
+        goals: (m, 3) [length].
+        fk_offsets: (n, 3) [rad].
+        follow: Whether each goal was solved from the pose before it.
+        rate: Goals a second [1/s].
+        solution: With a leading goal axis.
+    """
+
+    solver: Solver
+    goals: Array
+    fk_offsets: Array
+    follow: bool
+    rate: float
+    solution: Solution
+
+    @property
+    def chain(self) -> Chain:
+        """The chain."""
+        return self.solver.chain
+
+    @property
+    def settings(self) -> Settings:
+        """The options."""
+        return self.solver.settings
+
+    @cached_property
+    def local(self) -> Array:
+        """Rotations of the joints relative to their frozen frames, (m, n, 3, 3)."""
+        return hpb_to_matrix(self.solution.angles)
+
+    @cached_property
+    def from_root(self) -> Array:
+        """Distances of the goals from the bend root [length], (m,)."""
+        root = self.settings.bend_reference - 1
+        return np.asarray(np.linalg.norm(self.goals - self.solution.positions[:, root], axis=1))
+
+    @cached_property
+    def reach(self) -> float:
+        """Length of the bones from the bend root on [length]."""
+        return float(self.chain.lengths[self.settings.bend_reference - 1 :].sum())
+
+    @property
+    def hole(self) -> float:
+        """Least distance from the bend root that bones without limits can have [length]."""
+        bones = self.chain.lengths[self.settings.bend_reference - 1 :]
+        return max(0.0, float(2.0 * bones.max() - bones.sum()))
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether any joint before the end has a limit."""
+        return bool(np.isfinite(self.chain.high[:-1]).any())
+
+    def solve(self, goals: Array, solver: Solver | None = None) -> Solution:
+        """Solve other goals the way the scene does."""
+        chosen = self.solver if solver is None else solver
+        many = chosen.follow if self.follow else chosen.solve_many
+        return many(goals, fk_offsets=self.fk_offsets)
+
+
+def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
+    """Solve a scene's goals in order.
+
+    Args:
+        scene: The scene; its goals are a path at a steady rate.
+        registry: Where the strategies are looked up; a new one if absent.
+    """
+    rate = RATE if scene.judge is None else scene.judge.rate
+    solver = Solver(scene.chain, scene.settings, registry)
+    many = solver.follow if scene.follow else solver.solve_many
+    solution = many(scene.goals, fk_offsets=scene.fk_offsets)
+    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)
+
+
+def turn_between(first: Array, second: Array) -> Array:
+    """Return the angles between rotations [rad].
+
+    Args:
+        first: (..., 3, 3).
+        second: (..., 3, 3).
+    """
+    # |A - B|² = 8 sin²(angle / 2): exact for small angles, where the trace is not.
+    apart = np.linalg.norm(first - second, axis=(-2, -1)) / np.sqrt(8.0)
+    return np.asarray(2.0 * np.arcsin(np.clip(apart, 0.0, 1.0)))
+
+
+def pose_difference(run: Run, first: Array, second: Array) -> float:
+    """Return the largest turn of a joint before the end between poses (..., n, 3) [rad]."""
+    turns = turn_between(hpb_to_matrix(first), hpb_to_matrix(second))
+    return float(turns[..., : len(run.chain) - 1].max())
