@@ -6,11 +6,13 @@ from limbik.trajectory import Blend, KeyPoint, Limits, Line, plan
 start, corner, end = (KeyPoint.from_quaternion(p, (1, 0, 0, 0)) for p in points)
 trajectory = plan(start, [Line(corner), Blend(0.05), Line(end)], Limits(0.5, 1.0))
 samples = trajectory.sample(dt=0.01)
+motion = joint_motion(samples, Solver(chain))
 ```
 
 Needs the extra `limbik[trajectory]` (scipy).
 """
 
+from limbik.plugins.paths.joints import Failure, JointMotion, joint_motion
 from limbik.plugins.paths.keypoint import KeyPoint
 from limbik.plugins.paths.moves import (
     Arc,
@@ -31,6 +33,8 @@ __all__ = [
     "Arc",
     "ArcAbout",
     "Blend",
+    "Failure",
+    "JointMotion",
     "KeyPoint",
     "Limits",
     "Line",
@@ -42,6 +46,7 @@ __all__ = [
     "Stretch",
     "Trajectory",
     "Turn",
+    "joint_motion",
     "overlap_samples",
     "plan",
 ]

@@ -36,6 +36,7 @@ from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, SceneModel
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS
+from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
@@ -57,6 +58,7 @@ class Scene:
         goals: World positions, (m, 3) [length].
         follow: Whether the goals are a path, each solved from the pose before it.
         document: The file with its positions, to point at a place later.
+        trajectory: Key points and moves, if the scene has any.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Scene:
     goals: Array
     follow: bool
     document: Document
+    trajectory: TrajectoryModel | None = None
 
 
 def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
@@ -119,7 +122,17 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
     offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
-    return Scene(title, chain, model.options, offsets, names, goals, model.follow, document)
+    return Scene(
+        title,
+        chain,
+        model.options,
+        offsets,
+        names,
+        goals,
+        model.follow,
+        document,
+        trajectory=model.trajectory,
+    )
 
 
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:

@@ -16,9 +16,9 @@ from limbik.core.rotation import Array
 
 Index = NDArray[np.intp]
 
-EXACT = 2e-12  # of the curve's length
+EXACT = 1e-11  # of the curve's length
 MOST_HALVINGS = 24  # only intervals at a cusp, where the curve turns back, come this far
-FIRST = 8  # intervals a section before any is halved
+FIRST = 16  # intervals a section before any is halved
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = (_NODES + 1.0) / 2.0, _WEIGHTS / 2.0
 
@@ -62,38 +62,47 @@ def derivative(coefficients: Array, section: Index, ratio: Array) -> Array:
     return np.asarray(c[..., 1, :] + r * (2.0 * c[..., 2, :] + r * 3.0 * c[..., 3, :]))
 
 
-def _lengths(c: Array, section: Index, low: Array, high: Array) -> Array:
+def _speeds_squared(c: Array) -> Array:
+    """Coefficients of |dF/dr|² by r, lowest first, (5, n)."""
+    b, c2, d3 = c[:, 1], 2.0 * c[:, 2], 3.0 * c[:, 3]
+    pairs = ((b, b, 1.0), (b, c2, 2.0), (c2, c2, 1.0), (b, d3, 2.0), (c2, d3, 2.0), (d3, d3, 1.0))
+    p = [factor * np.einsum("ij,ij->i", first, second) for first, second, factor in pairs]
+    return np.stack([p[0], p[1], p[2] + p[3], p[4], p[5]])
+
+
+def _horner(powers: Array, r: Array) -> Array:
+    """Values of polynomials, lowest power first, (…)."""
+    value = powers[-1]
+    for power in powers[-2::-1]:
+        value = value * r + power
+    return np.asarray(value)
+
+
+def _lengths(quartic: Array, low: Array, high: Array) -> Array:
     """Lengths of the curve between ratios, (k,), by Gauss-Legendre."""
     r = low[:, None] + (high - low)[:, None] * _NODES
-    slopes = derivative(c, section[:, None], r)
-    speeds = np.sqrt(np.einsum("ijk,ijk->ij", slopes, slopes))
-    return np.asarray((high - low) * (speeds @ _WEIGHTS))
+    squares = _horner(quartic[:, :, None], r)
+    return np.asarray((high - low) * (np.sqrt(np.maximum(squares, 0.0)) @ _WEIGHTS))
 
 
-def _quintic(c: Array, section: Index, low: Array, high: Array, length: Array) -> Array:
+def _quintic(quartic: Array, low: Array, high: Array, length: Array) -> Array:
     """Coefficients of the ratio by the share of an interval's length, (6, k)."""
     ends = np.stack([low, high])
-    slope = derivative(c, np.stack([section, section]), ends)
-    bend = 2.0 * c[section][None, :, 2] + 6.0 * ends[..., None] * c[section][None, :, 3]
-    speed2 = np.maximum((slope * slope).sum(-1), 1e-300)
-    first = length / np.sqrt(speed2)
-    second = -(length**2) * (slope * bend).sum(-1) / speed2**2
-    rise, (d0, d1), (e0, e1) = high - low, first, second
+    squares = np.maximum(_horner(quartic, ends), 1e-300)
+    slopes = _horner(quartic[1:] * np.arange(1.0, 5.0)[:, None], ends)
+    d0, d1 = length / np.sqrt(squares)
+    e0, e1 = -0.5 * length**2 * slopes / squares**2
+    rise = high - low
     c3 = 10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * e0 + 0.5 * e1
     c4 = -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * e0 - e1
     c5 = 6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (e0 - e1)
     return np.stack([low, d0, e0 / 2.0, c3, c4, c5])
 
 
-def _is_off(powers: Array, c: Array, section: Index, ends: tuple[Array, Array, Array]) -> Array:
+def _error(powers: Array, quartic: Array, middle: Array, share: Array) -> Array:
     """Error of the polynomials at the middle ratios, as a length, (k,)."""
-    first_half, middle, total = ends
-    share = first_half / np.where(total > 0.0, total, 1.0)
-    guess = powers[5]
-    for power in (4, 3, 2, 1, 0):
-        guess = guess * share + powers[power]
-    speed = np.linalg.norm(derivative(c, section, middle), axis=-1)
-    return np.asarray(np.abs(guess - middle) * speed)
+    speeds = np.sqrt(np.maximum(_horner(quartic, middle), 0.0))
+    return np.asarray(np.abs(_horner(powers, share) - middle) * speeds)
 
 
 def length_table(coefficients: Array) -> LengthTable:
@@ -103,28 +112,38 @@ def length_table(coefficients: Array) -> LengthTable:
         coefficients: a, b, c, d of `F = a + b r + c r² + d r³`, r in 0..1, (n, 4, 3).
     """
     n = len(coefficients)
+    quartics = _speeds_squared(coefficients)
     section = np.repeat(np.arange(n), FIRST)
     low = np.tile(np.arange(FIRST) / FIRST, n)
     high = low + 1.0 / FIRST
-    whole = float(_lengths(coefficients, section, low, high).sum())
+    one = _lengths(quartics[:, section], low, high)
+    most = EXACT * float(one.sum())
     kept: list[tuple[NDArray[Any], ...]] = []
     for halving in range(MOST_HALVINGS + 1):
+        own = quartics[:, section]
         middle = 0.5 * (low + high)
-        one = _lengths(coefficients, section, low, high)
-        left = _lengths(coefficients, section, low, middle)
-        right = _lengths(coefficients, section, middle, high)
+        left, right = _lengths(own, low, middle), _lengths(own, middle, high)
         total = left + right
-        powers = _quintic(coefficients, section, low, high, total)
-        off = np.abs(one - total) + _is_off(powers, coefficients, section, (left, middle, total))
-        good = (off <= EXACT * whole) | (halving == MOST_HALVINGS)
+        powers = _quintic(own, low, high, total)
+        share = left / np.where(total > 0.0, total, 1.0)
+        good = np.abs(one - total) + _error(powers, own, middle, share) <= most
+        good |= halving == MOST_HALVINGS
         kept.append((section[good], low[good], total[good], powers[:, good]))
         if good.all():
             break
-        again, at, to, cut = section[~good], low[~good], high[~good], middle[~good]
-        section, low, high = np.r_[again, again], np.r_[at, cut], np.r_[cut, to]
-    parts = [np.concatenate([part[k] for part in kept], axis=-1) for k in range(4)]
-    order = np.lexsort((parts[1], parts[0]))
-    section, lengths = parts[0][order], parts[2][order]
-    x = np.concatenate([[0.0], np.cumsum(lengths)])
-    bounds = np.searchsorted(section, np.arange(n + 1))
-    return LengthTable(x, section, parts[3][:, order], x[bounds])
+        bad = ~good
+        section, one = np.tile(section[bad], 2), np.concatenate([left[bad], right[bad]])
+        low, middle, high = low[bad], middle[bad], high[bad]
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return _assembled(kept, n)
+
+
+def _assembled(kept: list[tuple[NDArray[Any], ...]], n: int) -> LengthTable:
+    """Put intervals in order along the curve."""
+    section, low, lengths, powers = (
+        np.concatenate([part[k] for part in kept], axis=-1) for k in range(4)
+    )
+    order = np.lexsort((low, section))
+    x = np.concatenate([[0.0], np.cumsum(lengths[order])])
+    bounds = np.searchsorted(section[order], np.arange(n + 1))
+    return LengthTable(x, section[order], powers[:, order], x[bounds])

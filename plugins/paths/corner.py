@@ -66,15 +66,21 @@ class Corner:
         return (self.blend.centripetal / sharpest) ** 0.5 if sharpest > 0.0 else inf
 
 
-def corner(first: Leg, second: Leg, blend: Blend) -> Corner:
+def corner(first: Leg, second: Leg, blend: Blend, used: float = 0.0) -> Corner:
     """Round the key point between two legs.
+
+    Args:
+        first: The leg before the key point.
+        second: The leg after it.
+        blend: What the user asked for.
+        used: Length of the first leg that the corner at its start takes (T A28).
 
     Raises:
         InputError: A length does not fit its segment, or the path turns back on itself.
     """
     after = blend.before if blend.after is None else blend.after
     blend = replace(blend, after=after)
-    _check_lengths(first, second, blend.before, after)
+    _check_lengths(first, second, blend.before, after, used)
     if blend.centripetal is not None and not blend.centripetal > 0.0:
         raise _error(first, f"centripetal must be above 0, not {blend.centripetal:g}")
     leave = max(first.length - blend.before, 0.0)
@@ -126,7 +132,7 @@ def _eased(u: Array, first: float, last: float) -> Array:
     )
 
 
-def _check_lengths(first: Leg, second: Leg, before: float, after: float) -> None:
+def _check_lengths(first: Leg, second: Leg, before: float, after: float, used: float) -> None:
     sides = (
         (first, before, "before", -1),
         (second, after, "after", 0),
@@ -136,13 +142,17 @@ def _check_lengths(first: Leg, second: Leg, before: float, after: float) -> None
             raise _error(first, f"move {leg.number} does not move the position: use a stop")
         room = float(np.diff(leg.shape.knots)[section])
         room = min(room, leg.turning.free_length(section == 0))
+        beside = ""
+        if section == -1 and leg.length - used < room:
+            room = leg.length - used
+            beside = f" beside the {used:g} of the corner before"
         if not length > 0.0:
             raise _error(first, f"the blend's length {side} the key point must be above 0")
         if length > room * FITS:
             raise _error(
                 first,
                 f"the blend is longer {side} the key point than the segment: "
-                f"{length:g}, at most {room:.6g} fits",
+                f"{length:g}, at most {room:.6g} fits{beside}",
             )
 
 

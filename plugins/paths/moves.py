@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from limbik.core.rotation import Array
 from limbik.plugins.paths.keypoint import KeyPoint
 
 Drive = Literal["length", "parameter"]
@@ -175,6 +176,6 @@ Move = Line | Turn | Arc | ArcAbout | Spline
 Junction = Stop | Blend | Overlap
 
 
-def as_vector(values: ArrayLike) -> "np.typing.NDArray[np.float64]":
+def as_vector(values: ArrayLike) -> Array:
     """Return three numbers as an array."""
     return np.asarray(values, np.float64).reshape(3)

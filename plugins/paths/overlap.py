@@ -39,8 +39,15 @@ class OverlapReport:
         return self.peak - self.allowed if self.peak > self.allowed * (1.0 + 1e-9) else 0.0
 
 
-def overlap_time(before: Piece, after: Piece, wanted: Overlap) -> float:
+def overlap_time(before: Piece, after: Piece, wanted: Overlap, used: float = 0.0) -> float:
     """Return how long two pieces run together [s].
+
+    Args:
+        before: The piece that ends.
+        after: The piece that starts.
+        wanted: What the user asked for.
+        used: How long the piece that ends already overlaps the one before it: overlaps of one
+            move may not overlap each other (T A36).
 
     Raises:
         InputError: Not exactly one of time, cut and full is given, the time is longer than a
@@ -48,16 +55,16 @@ def overlap_time(before: Piece, after: Piece, wanted: Overlap) -> float:
     """
     if (wanted.time is not None) + (wanted.cut is not None) + bool(wanted.full) != 1:
         raise error(before, "give exactly one of time, cut and full")
+    most = min(before.duration - used, after.duration)
     if wanted.time is not None:
-        most = min(before.duration, after.duration)
         if not 0.0 <= wanted.time <= most * FITS:
             raise error(
                 before,
-                f"the overlap of {wanted.time:g} s is longer than a move: at most {most:.6g} s "
-                f"fits, and {longest(before, after):.6g} s without overrun",
+                f"the overlap of {wanted.time:g} s is longer than what is left of a move: at most "
+                f"{most:.6g} s fits, and {longest(before, after):.6g} s without overrun",
             )
         return min(wanted.time, most)
-    full = longest(before, after)
+    full = min(longest(before, after), most)
     if wanted.cut is None:
         return full
     if not wanted.cut > 0.0:
@@ -122,24 +129,6 @@ def report(before: Piece, after: Piece, time: float) -> OverlapReport:
         float(np.linalg.norm(velocities, axis=1).max()),
         max(p.rates.speed if p.moves else 0.0 for p in (before.legs[-1], after.legs[0])),
     )
-
-
-def check_room(pieces: list[Piece], times: list[float]) -> None:
-    """Refuse two overlaps of one move that overlap each other (T A36).
-
-    Args:
-        pieces: All pieces.
-        times: Overlap after each piece but the last; negative for pauses.
-    """
-    for k in range(1, len(pieces) - 1):
-        before, after = max(times[k - 1], 0.0), max(times[k], 0.0)
-        if before + after > pieces[k].duration * FITS:
-            room = pieces[k].duration - before
-            raise error(
-                pieces[k],
-                f"two overlaps meet in move {pieces[k].legs[0].number}: {after:g} s after it, at "
-                f"most {room:.6g} s fits beside the {before:g} s before it",
-            )
 
 
 def error(before: Piece, message: str) -> InputError:

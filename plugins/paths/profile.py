@@ -124,7 +124,11 @@ class Profile:
 
     def speed_at(self, place: float) -> float:
         """Return the speed at a distance [length/s]."""
-        return float(self.at(np.array([self.time_at(place)]))[1][0])
+        if not self.phases:
+            return 0.0
+        t = self.time_at(place)
+        k = int(np.searchsorted(self.times[1:-1], t, side="right"))
+        return self.phases[k]._replace(duration=t - float(self.times[k])).last_speed
 
 
 def _time_within(phase: Phase, distance: float) -> float:

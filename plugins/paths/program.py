@@ -13,7 +13,7 @@ from limbik.plugins.paths.corner import Corner, corner
 from limbik.plugins.paths.keypoint import KeyPoint
 from limbik.plugins.paths.leg import Leg, build_leg
 from limbik.plugins.paths.moves import Blend, Junction, Limits, Move, Overlap, Stop
-from limbik.plugins.paths.overlap import OverlapReport, check_room, overlap_time, report
+from limbik.plugins.paths.overlap import OverlapReport, overlap_time, report
 from limbik.plugins.paths.piece import Piece, build_piece
 from limbik.plugins.paths.quaternions import continuous, inverse, product
 from limbik.plugins.paths.samples import Samples, sample_times
@@ -135,7 +135,9 @@ class Trajectory:
             t = start
             for span in piece.spans:
                 for phase in span.phases:
-                    speeds = (phase.speed, phase.last_speed)
+                    first, last = phase.speed, phase.last_speed
+                    tiny = 1e-12 * max(first, last)  # rounding where it stands
+                    speeds = (first if first > tiny else 0.0, last if last > tiny else 0.0)
                     found.append(
                         Stretch(t, t + phase.duration, span.number, span.name, phase.limit, *speeds)
                     )
@@ -167,13 +169,7 @@ def plan(
         raise InputError(f"order: must be base or tool, not {order!r}")
     legs = _legs(start, moves, limits)
     pieces, joints = _pieces(legs, junctions)
-    overlapping = [
-        overlap_time(pieces[k], pieces[k + 1], joint)
-        if isinstance(joint, Overlap)
-        else -joint.pause
-        for k, joint in enumerate(joints)
-    ]
-    check_room(pieces, overlapping)
+    overlapping = _overlap_times(pieces, joints)
     ends = np.array([piece.duration for piece in pieces[:-1]]) - overlapping
     reports = tuple(
         report(pieces[k], pieces[k + 1], overlapping[k])
@@ -185,6 +181,18 @@ def plan(
     told += [_overrun(done) for done in reports if done.overrun]
     starts = np.concatenate([[0.0], np.cumsum(ends)])
     return Trajectory(tuple(pieces), starts, order, points, reports, tuple(told))
+
+
+def _overlap_times(pieces: list[Piece], joints: list[Stop | Overlap]) -> list[float]:
+    """How long each piece runs on beside the next; negative for pauses (T A36)."""
+    times: list[float] = []
+    for k, joint in enumerate(joints):
+        if isinstance(joint, Overlap):
+            used = max(times[-1], 0.0) if times else 0.0
+            times.append(overlap_time(pieces[k], pieces[k + 1], joint, used))
+        else:
+            times.append(-joint.pause)
+    return times
 
 
 def _overrun(done: OverlapReport) -> str:
@@ -233,8 +241,8 @@ def _pieces(legs: list[Leg], junctions: list[Junction]) -> tuple[list[Piece], li
     group, corners = [legs[0]], list[Corner]()
     for leg, joint in zip(legs[1:], junctions, strict=True):
         if isinstance(joint, Blend):
-            corners.append(corner(group[-1], leg, joint))
-            _check_apart(corners, group[-1])
+            used = corners[-1].join if corners else 0.0
+            corners.append(corner(group[-1], leg, joint, used))
             group.append(leg)
             continue
         pieces.append(build_piece(group, corners))
@@ -242,20 +250,6 @@ def _pieces(legs: list[Leg], junctions: list[Junction]) -> tuple[list[Piece], li
         group, corners = [leg], []
     pieces.append(build_piece(group, corners))
     return pieces, joints
-
-
-def _check_apart(corners: list[Corner], leg: Leg) -> None:
-    """Refuse two corners that overlap in one move (T A28)."""
-    if len(corners) > 1 and corners[-2].join > corners[-1].leave * (1.0 + 1e-9):
-        room = leg.length - corners[-2].join
-        raise InputError(
-            Fault(
-                "blend",
-                f"two corners meet in this move: {corners[-1].blend.before:g} before its end, at "
-                f"most {room:.6g} fits beside the {corners[-2].join:g} after its start",
-                key=f"move {leg.number}",
-            )
-        )
 
 
 def _error(message: str) -> InputError:

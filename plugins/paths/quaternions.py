@@ -140,7 +140,7 @@ def continuous(quaternions: ArrayLike, first: ArrayLike | None = None) -> Array:
     q = np.array(quaternions, np.float64)
     if not len(q):
         return q
-    flips = np.where((q[1:] * q[:-1]).sum(-1) < 0.0, -1.0, 1.0)
+    flips = np.where(np.einsum("ij,ij->i", q[1:], q[:-1]) < 0.0, -1.0, 1.0)
     sign = 1.0 if first is None or float(q[0] @ np.asarray(first)) >= 0.0 else -1.0
     if sign > 0.0 and (flips > 0.0).all():
         return q
