@@ -50,7 +50,7 @@ def _figure(scene: Scene, trajectory: Trajectory, motion: JointMotion) -> "Figur
 
     axes = moving_axes(scene.chain)
     rows = -(-len(axes) // COLUMNS)
-    height = 7.4 + 2.1 * rows
+    height = 7.7 + 2.1 * rows
     figure = Figure(figsize=(14.0, height), facecolor=PAPER)
     FigureCanvasAgg(figure)
     ratios = [6.0, 2.1 * rows]
@@ -68,7 +68,7 @@ def _figure(scene: Scene, trajectory: Trajectory, motion: JointMotion) -> "Figur
         _draw_joint(place, motion, k, axis_names(scene.chain)[k], np.degrees(span), every)
     _title(figure, scene, trajectory, motion)
     edge = 0.5 / height
-    figure.subplots_adjust(0.045, edge, 0.985, 1.0 - 1.15 / height)
+    figure.subplots_adjust(0.045, edge, 0.985, 1.0 - 1.45 / height)
     return figure
 
 

@@ -15,14 +15,24 @@ from numpy.typing import NDArray
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError
 from limbik.core.rotation import Array
-from limbik.core.solution import Continuity, Solution
+from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
 from limbik.plugins.paths.quaternions import from_matrix, half_angle, short_way
 from limbik.plugins.paths.samples import Samples
 
-Kind = Literal["out-of-reach", "not-reached", "limit", "speed"]
+Kind = Literal["out-of-reach", "blocked", "stopped", "limit", "speed"]
 ROUNDING = 1e-9  # [rad]
 TURN = 2.0 * np.pi
+_KINDS: dict[Status, Kind] = {
+    Status.OUT_OF_REACH: "out-of-reach",
+    Status.BLOCKED: "blocked",
+    Status.STOPPED: "stopped",
+}
+_WORDS = {
+    "out-of-reach": "out of reach",
+    "blocked": "blocked by joint limits",
+    "stopped": "not reached",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +40,7 @@ class Failure:
     """Neighbouring samples with one thing wrong.
 
     Attributes:
-        kind: `out-of-reach`, `not-reached`, `limit` or `speed`.
+        kind: `out-of-reach`, `blocked`, `stopped` (all three not reached), `limit` or `speed`.
         first, last: Indices of the samples.
         start, end: Their times [s].
         position: The goal where it is worst, (x, y, z) [length].
@@ -65,8 +75,7 @@ class Failure:
             return f"{self.joint} turns at {worst:.4g}°/s, at most {allowed:.4g}°/s"
         if self.kind == "limit":
             return f"{self.joint} is {worst:.3g}° past its limit"
-        words = "out of reach" if self.kind == "out-of-reach" else "not reached"
-        return f"{words}, {self.worst:.3g} away, at most {self.allowed:.3g}"
+        return f"{_WORDS[self.kind]}, {self.worst:.3g} away, at most {self.allowed:.3g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,13 +156,11 @@ def _unwound(solver: Solver, angles: Array) -> Array:
 
 
 def _unreached(samples: Samples, solver: Solver, solution: Solution) -> list[Failure]:
-    distance, tolerance = np.asarray(solution.distance), solver.settings.tolerance
-    chain = solver.chain
-    root = np.asarray(chain.base_position) + chain.base_rotation @ chain.offsets[0]
-    beyond = np.linalg.norm(samples.positions - root, axis=1) > chain.length + tolerance
-    off = ~np.asarray(solution.reached, bool)
-    found = _runs("out-of-reach", off & beyond, distance, tolerance, "", samples)
-    return found + _runs("not-reached", off & ~beyond, distance, tolerance, "", samples)
+    distance, status = np.asarray(solution.distance), np.asarray(solution.status)
+    found: list[Failure] = []
+    for number, kind in _KINDS.items():
+        found += _runs(kind, status == number, distance, solver.settings.tolerance, "", samples)
+    return found
 
 
 def _past_limits(samples: Samples, solver: Solver, angles: Array) -> list[Failure]:
