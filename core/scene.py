@@ -37,6 +37,7 @@ from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS
+from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
@@ -59,6 +60,7 @@ class Scene:
         follow: Whether the goals are a path, each solved from the pose before it.
         document: The file with its positions, to point at a place later.
         judge: Rate and thresholds for judging the motion; None where the scene has none.
+        trajectory: Key points and moves, if the scene has any.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Scene:
     follow: bool
     document: Document
     judge: JudgeModel | None = None
+    trajectory: TrajectoryModel | None = None
 
 
 def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
@@ -123,7 +126,16 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
     return Scene(
-        title, chain, model.options, offsets, names, goals, model.follow, document, model.judge
+        title,
+        chain,
+        model.options,
+        offsets,
+        names,
+        goals,
+        model.follow,
+        document,
+        model.judge,
+        model.trajectory,
     )
 
 

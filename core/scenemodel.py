@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
 from limbik.core.settings import Model, Settings
+from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.wording import found_words
 
 FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
@@ -139,6 +140,9 @@ class SceneModel(Model):
         bool, Field(description="solve the goals as a path, each from the pose before it")
     ] = False
     judge: Annotated[JudgeModel | None, Field(description="thresholds for `limbik judge`")] = None
+    trajectory: Annotated[
+        TrajectoryModel | None, Field(description="key points and moves between them")
+    ] = None
     goals: Annotated[
         Annotated[list[GoalModel], Tag("list")] | Annotated[CsvModel, Tag("csv")],
         Discriminator(_goals_form),

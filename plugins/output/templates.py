@@ -4,7 +4,7 @@ from pathlib import Path
 
 from limbik.core.errors import Fault, InputError
 
-TEMPLATES = ("arm", "leg", "spine")
+TEMPLATES = ("arm", "leg", "spine", "weld")
 
 
 def write_template(name: Path, template: str) -> Path:

@@ -171,7 +171,7 @@ def test_init_knows_its_templates(run: Run) -> None:
     status, _, err = run("init", "mine", "--template", "leag")
 
     assert status == 2
-    assert "no template is called 'leag'; known: arm, leg, spine (did you mean 'leg'?)" in err
+    assert "no template is called 'leag'; known: arm, leg, spine, weld (did you mean 'leg'?)" in err
 
 
 def test_plugins_lists_every_strategy_with_parameters(run: Run) -> None:

@@ -1,0 +1,145 @@
+"""A trajectory and its joint motion as CSV, JSON, NPZ and TUM poses (J-08). Angles in degrees."""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from limbik.core.chain import AXES, Chain
+from limbik.core.frames import rotation_to_right_handed, to_right_handed
+from limbik.core.rotation import Array
+from limbik.core.scene import Scene
+from limbik.plugins.paths.joints import JointMotion
+from limbik.plugins.paths.program import Trajectory
+from limbik.plugins.paths.quaternions import continuous, from_matrix
+from limbik.plugins.paths.samples import Samples
+
+POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
+MOTION = ("speed", "distance", "reached")
+
+
+def moving_axes(chain: Chain) -> list[tuple[int, int]]:
+    """Return joint and axis of all that can turn; the end's own axes move nothing and are out."""
+    spans = (chain.high - chain.low)[:-1]
+    return [(joint, axis) for joint, axis in np.argwhere(spans > 0.0).tolist()]
+
+
+def axis_names(chain: Chain) -> list[str]:
+    """Return names such as `elbow pitch` of the moving axes."""
+    return [f"{chain.names[joint]} {AXES[axis]}" for joint, axis in moving_axes(chain)]
+
+
+def axis_angles(motion: JointMotion) -> Array:
+    """Return the moving axes' angles in degrees, (m, k)."""
+    axes = moving_axes(motion.solution.chain)
+    joints, which = [joint for joint, _ in axes], [axis for _, axis in axes]
+    return np.degrees(motion.angles[:, joints, which])
+
+
+def motion_rows(motion: JointMotion) -> str:
+    """Write a CSV table, one line a sample: time, pose, speed, distance left, angles [deg]."""
+    samples, chain = motion.samples, motion.solution.chain
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", *POSE, *MOTION, *axis_names(chain)])
+    reached = np.asarray(motion.solution.reached, int)
+    for row, done in zip(_table(motion, samples).tolist(), reached.tolist(), strict=True):
+        writer.writerow([*row[:10], done, *row[10:]])
+    return text.getvalue()
+
+
+def _table(motion: JointMotion, samples: Samples) -> Array:
+    return np.column_stack(
+        [
+            samples.times,
+            samples.positions,
+            samples.quaternions,
+            samples.speeds,
+            np.asarray(motion.solution.distance),
+            axis_angles(motion),
+        ]
+    )
+
+
+def motion_arrays(motion: JointMotion) -> bytes:
+    """Write a compressed NPZ file; angles in radians like all arrays of limbik."""
+    samples, solution = motion.samples, motion.solution
+    content = io.BytesIO()
+    np.savez_compressed(
+        content,
+        times=samples.times,
+        positions=samples.positions,
+        quaternions=samples.quaternions,
+        velocities=samples.velocities,
+        speeds=samples.speeds,
+        angles=motion.angles,
+        joint_speeds=motion.speeds,
+        distance=np.asarray(solution.distance),
+        reached=np.asarray(solution.reached),
+        joints=np.array(solution.chain.names),
+    )
+    return content.getvalue()
+
+
+def tum_rows(samples: Samples, right_handed: bool = False) -> str:
+    """Write TUM poses, a line each: time x y z qx qy qz qw.
+
+    Args:
+        samples: The poses.
+        right_handed: Convert them to the right-handed world with Z up.
+    """
+    places, turned = samples.positions, samples.quaternions
+    if right_handed:
+        places = to_right_handed(places)
+        turned = continuous(from_matrix(rotation_to_right_handed(samples.rotations)))
+    table = np.column_stack([samples.times, places, turned[:, [1, 2, 3, 0]]])
+    head = "# timestamp x y z qx qy qz qw\n"
+    return head + "".join(" ".join(map(repr, row)) + "\n" for row in table.tolist())
+
+
+def motion_record(
+    scene: Scene, trajectory: Trajectory, motion: JointMotion, with_samples: bool
+) -> dict[str, Any]:
+    """Describe a motion: duration, what limits it, overlaps, failures, and the samples if asked."""
+    record: dict[str, Any] = {
+        "status": "failures" if motion.failures else "ok",
+        "scene": scene.document.name,
+        "duration": trajectory.duration,
+        "samples": len(motion.samples),
+        "warnings": list(trajectory.warnings),
+        "stretches": [stretch._asdict() for stretch in trajectory.stretches()],
+        "overlaps": [
+            {
+                "move": done.move,
+                "time": done.time,
+                "ramp": done.ramp,
+                "cut": done.cut,
+                "peak": done.peak,
+                "overrun": done.overrun,
+            }
+            for done in trajectory.overlaps
+        ],
+        "failures": [failure_record(failure) for failure in motion.failures],
+        "largest_orientation_error": float(np.degrees(motion.orientation_error.max())),
+    }
+    if with_samples:
+        names = ["time", *POSE, "speed", "distance", *axis_names(scene.chain)]
+        columns = _table(motion, motion.samples).T.tolist()
+        record["columns"] = dict(zip(names, columns, strict=True))
+        record["columns"]["reached"] = np.asarray(motion.solution.reached, bool).tolist()
+    return record
+
+
+def failure_record(failure: Any) -> dict[str, Any]:
+    """Describe one failure, with its sentence."""
+    return {
+        "kind": failure.kind,
+        "joint": failure.joint,
+        "first": failure.first,
+        "last": failure.last,
+        "start": failure.start,
+        "end": failure.end,
+        "position": list(failure.position),
+        "message": str(failure),
+    }

@@ -1,0 +1,1 @@
+"""Cartesian trajectories: shapes, speeds, corners and orientations (003)."""
