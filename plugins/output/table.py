@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from limbik.core.rotation import Array
 from limbik.core.formats import Inspection
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.plugins.output.listing import range_text
