@@ -17,6 +17,7 @@ from limbik.plugins.output.failures import reported
 from limbik.plugins.output.templates import TEMPLATES, write_template
 
 if TYPE_CHECKING:
+    from limbik.core.formats import Bake
     from limbik.core.registry import Registry
     from limbik.core.scene import Scene
     from limbik.core.solution import Solution
@@ -137,6 +138,102 @@ def trajectory(
 
 
 @app.command()
+def bake(
+    scene: SceneFile,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="File to write; its ending chooses the format.")
+    ],
+    follow: Annotated[
+        bool | None,
+        typer.Option(
+            "--follow/--stateless",
+            help="Solve each frame from the one before, or on its own; absent = as the scene says.",
+            show_default=False,
+        ),
+    ] = None,
+    mirrored: Annotated[
+        bool, typer.Option("--mirrored", help="Exchange left and right in the result.")
+    ] = False,
+    fps: Annotated[
+        float | None,
+        typer.Option(min=0.001, max=1e6, help="Frames a second; absent = the clip's, or 30."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Solve a scene's goals as the frames of a motion and write it to a file.
+
+    limbik bake walk.yaml -o walk.bvh
+
+    limbik bake reach.yaml -o reach.glb --follow --fps 60
+    """
+    with reported(as_json):
+        from dataclasses import replace
+
+        from limbik.core.baking import bake_scene
+        from limbik.core.registry import Registry
+        from limbik.core.scene import read_scene
+        from limbik.plugins.output.baking import output_for, progress
+        from limbik.plugins.output.files import write_whole
+
+        registry = Registry()
+        writer = output_for(output, registry)
+        read = read_scene(scene, registry)
+        if follow is not None:
+            read = replace(read, follow=follow)
+        _say_notes(read)
+        _announce_compiling()
+        with progress(len(read.goals)) as report:
+            seconds = None if fps is None else 1.0 / fps
+            baked = bake_scene(
+                read, registry, mirrored=mirrored, frame_time=seconds, progress=report
+            )
+        write_whole(output, writer.write(baked))
+        _show_bake(baked, output, as_json)
+        if read.settings.ik and baked.metrics["reached"] < baked.metrics["frames"]:
+            raise SystemExit(1)
+
+
+@app.command()
+def inspect(
+    file: Annotated[Path, typer.Argument(help="A robot or a motion clip, such as robot.urdf.")],
+    as_json: AsJson = False,
+) -> None:
+    """Show the joints of a robot or a motion clip, and the chains a scene could name.
+
+    limbik inspect robot.urdf
+
+    limbik inspect walk.bvh --json
+    """
+    with reported(as_json):
+        from dataclasses import asdict
+
+        from limbik.core.registry import Registry
+        from limbik.plugins.output.baking import inspect_file
+        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.table import print_inspection
+
+        inspection = inspect_file(file, Registry())
+        if as_json:
+            typer.echo(to_json({"status": "ok", "file": str(file), **asdict(inspection)}))
+        else:
+            print_inspection(inspection)
+
+
+@app.command()
+def schema() -> None:
+    """Write the JSON Schema of scenes, for editors that check and complete YAML.
+
+    limbik schema > limbik.schema.json
+
+    limbik schema | head
+    """
+    with reported():
+        from limbik.plugins.output.templates import schema_text
+
+        typer.echo(schema_text(), nl=False)
+
+
+@app.command()
 def check(
     scenes: Annotated[list[str], typer.Argument(help="Scene files (YAML), or -.")],
     as_json: AsJson = False,
@@ -164,6 +261,7 @@ def check(
         for read in sound if not as_json else ():
             counts = f"{len(read.chain)} joints, {len(read.goals)} goals"
             typer.echo(f"{read.document.name}: ok, {counts}")
+            _say_notes(read)
         if faults:
             raise SceneError(faults)
         if as_json:
@@ -239,6 +337,7 @@ def plugins(as_json: AsJson = False) -> None:
 def _solve_all(scene: "Scene", registry: "Registry", trace: bool) -> list["Solution"]:
     from limbik.core.solving import solve_scene
 
+    _say_notes(scene)
     _announce_compiling()
     return solve_scene(scene, registry, trace)
 
@@ -248,6 +347,24 @@ def _announce_compiling() -> None:
 
     if not is_compiled_before():
         typer.echo("limbik: compiling machine code, once for this version ...", err=True)
+
+
+def _say_notes(scene: "Scene") -> None:
+    for note in scene.notes:
+        typer.echo(f"{scene.document.name}: note: {note}", err=True)
+
+
+def _show_bake(baked: "Bake", output: Path, as_json: bool) -> None:
+    from limbik.plugins.output.records import to_json
+    from limbik.plugins.output.table import print_metrics
+
+    met = baked.metrics["reached"] == baked.metrics["frames"]
+    if as_json:
+        status = "ok" if met or not baked.scene.settings.ik else "unreached"
+        typer.echo(to_json({"status": status, "file": str(output), "metrics": baked.metrics}))
+    else:
+        print_metrics(baked.metrics)
+        typer.echo(f"wrote {output}")
 
 
 def main() -> None:

@@ -1,8 +1,9 @@
-"""The hooks by which plug-ins offer strategies.
+"""The hooks by which plug-ins offer strategies and file formats.
 
-Each hook is called once, when the registry loads the plug-in, and returns strategies; it is never
-called during a solve. limbik's own strategies come through the same hooks. The example of each
-hook is a whole plug-in: a module with it, named by an entry point of the group `limbik`, is one.
+Each hook is called once, when the registry loads the plug-in, and returns what it offers; it is
+never called during a solve. limbik's own strategies and formats come through the same hooks. The
+example of each hook is a whole plug-in: a module with it, named by an entry point of the group
+`limbik`, is one.
 
 ```toml
 [project.entry-points.limbik]
@@ -15,6 +16,7 @@ from typing import Any, TypeVar
 
 import pluggy
 
+from limbik.core.formats import Output, SceneInput
 from limbik.core.strategy import Strategy
 
 PROJECT = "limbik"
@@ -178,6 +180,67 @@ def limbik_finishes() -> Iterable[Strategy]:
         @limbik.hookimpl
         def limbik_finishes():
             return [limbik.Strategy("leave", leave, description="Leave CCD's pose as it is.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_scene_inputs() -> Iterable[SceneInput]:
+    """Offer kinds of files a scene's chain can come from.
+
+    Returns:
+        The inputs; the name of each is the key that chooses it in a scene's `chain` mapping.
+
+    Example:
+        ```python
+        import limbik
+        from limbik.core.formats import Body, Inspection, SceneInput
+        from limbik.core.settings import Model
+
+
+        class Stick(Model):
+            stick: str  # the file: one length a line
+
+
+        def read(model, folder):
+            lengths = map(float, (folder / model.stick).read_text().split())
+            bones = [limbik.Joint(f"bone {k}", (0, 0, x)) for k, x in enumerate(lengths)]
+            return Body(limbik.Chain([limbik.Joint("base"), *bones]))
+
+
+        def inspect(path):
+            return Inspection("a stick", ("length",), ((path.read_text(),),), ())
+
+
+        @limbik.hookimpl
+        def limbik_scene_inputs():
+            return [SceneInput("stick", (".stick",), Stick, read, inspect, "Bones in a row.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_outputs() -> Iterable[Output]:
+    """Offer kinds of files a baked motion can be written to.
+
+    Returns:
+        The outputs; the ending of the file chooses one.
+
+    Example:
+        ```python
+        import limbik
+        from limbik.core.formats import Output
+
+
+        def write(bake):
+            return str(bake.solution.distance.tolist())
+
+
+        @limbik.hookimpl
+        def limbik_outputs():
+            return [Output("distances", (".txt",), write, "All distances.")]
         ```
     """
     raise NotImplementedError  # a specification is never called

@@ -14,6 +14,7 @@ from typing import Any
 
 from limbik.core.binding import Bound, split_choice, unknown_strategy
 from limbik.core.errors import PluginError
+from limbik.core.formats import Output, SceneInput
 from limbik.core.params import read
 from limbik.core.roster import Broken, Plugin, Registered, Roster, entry_points
 from limbik.core.slots import SLOTS
@@ -139,6 +140,34 @@ class Registry:
             cause = f"its check of the parameters failed: {type(error).__name__}: {error}"
             raise PluginError(cause, found.plugin.name, name, slot) from error
         return Bound(slot, name, params, found.plugin, found.strategy)
+
+    def scene_input(self, keys: Iterable[str]) -> SceneInput | None:
+        """Find the scene input that one of the keys of a `chain` mapping chooses, or None.
+
+        Plug-ins of other distributions are only looked at when no built-in input fits.
+        """
+        wanted = list(keys)
+        for complete in (False, True):
+            known = self._formats("scene_input", complete)
+            for key in wanted:
+                if isinstance(found := known.get(key), SceneInput):
+                    return found
+        return None
+
+    def scene_inputs(self) -> dict[str, SceneInput]:
+        """All working scene inputs by name, sorted."""
+        known = sorted(self._formats("scene_input", True).items())
+        return {name: found for name, found in known if isinstance(found, SceneInput)}
+
+    def outputs(self) -> dict[str, Output]:
+        """All working outputs by name, sorted."""
+        known = sorted(self._formats("output", True).items())
+        return {name: found for name, found in known if isinstance(found, Output)}
+
+    def _formats(self, kind: str, complete: bool) -> dict[str, SceneInput | Output]:
+        if complete:
+            self._load_third_party()
+        return {name: offered.format for name, offered in self._roster.formats(kind).items()}
 
     def plugins(self) -> list[Plugin]:
         """All plug-ins, built-in ones first, then by name; also blocked and broken ones."""

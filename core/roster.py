@@ -2,7 +2,7 @@
 
 import contextlib
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
 from itertools import islice
@@ -11,6 +11,7 @@ from typing import Any
 import pluggy
 
 from limbik.core import hooks
+from limbik.core.formats import FORMAT_HOOKS, Output, SceneInput, format_fault
 from limbik.core.slots import SLOTS, Slot
 from limbik.core.strategy import Strategy
 from limbik.core.trial import examine
@@ -62,6 +63,14 @@ class Registered:
 
 
 @dataclass(frozen=True)
+class OfferedFormat:
+    """A file format and who brought it."""
+
+    format: SceneInput | Output
+    plugin: Plugin
+
+
+@dataclass(frozen=True)
 class Broken:
     """Something in a plug-in that failed.
 
@@ -101,9 +110,10 @@ def one_line(error: BaseException) -> str:
 def _implementations(manager: pluggy.PluginManager) -> dict[str, Callable[[], Any]]:
     """The implemented hooks of a manager that holds one plug-in."""
     found = {}
-    for slot in SLOTS.values():
-        for implementation in getattr(manager.hook, slot.hook).get_hookimpls():
-            found[slot.hook] = implementation.function
+    kinds = [slot.hook for slot in SLOTS.values()] + [hook for hook, _ in FORMAT_HOOKS.values()]
+    for hook in kinds:
+        for implementation in getattr(manager.hook, hook).get_hookimpls():
+            found[hook] = implementation.function
     return found
 
 
@@ -118,6 +128,7 @@ class Roster:
         self.plugins: list[Plugin] = []
         self._failures: list[Broken] = []
         self._offers: dict[tuple[str, str], list[Registered]] = {}
+        self._formats: dict[tuple[str, str], list[OfferedFormat]] = {}
 
     @property
     def broken(self) -> list[Broken]:
@@ -131,6 +142,14 @@ class Roster:
             name: offers[0]
             for name, offers in firsts.items()
             if len(offers) == 1 or offers[0].plugin.built_in
+        }
+
+    def formats(self, kind: str) -> dict[str, OfferedFormat]:
+        """The formats of a kind (`scene_input`, `output`) that have their name for themselves."""
+        return {
+            name: offers[0]
+            for (where, name), offers in self._formats.items()
+            if where == kind and (len(offers) == 1 or offers[0].plugin.built_in)
         }
 
     def leave_out(self, plugin: Plugin) -> None:
@@ -157,19 +176,30 @@ class Roster:
         self.plugins.append(plugin)
         for slot in SLOTS.values():
             if slot.hook in implemented:
-                self._take_all(plugin, slot, implemented[slot.hook])
+                for strategy in self._offered(plugin, slot.name, implemented[slot.hook]):
+                    self._take(plugin, slot, strategy)
+        for kind, (hook, _) in FORMAT_HOOKS.items():
+            if hook in implemented:
+                for offered in self._offered(plugin, kind, implemented[hook]):
+                    self._take_format(plugin, kind, offered)
 
-    def _take_all(self, plugin: Plugin, slot: Slot, hook: Callable[[], Any]) -> None:
+    def _offered(self, plugin: Plugin, kind: str, hook: Callable[[], Any]) -> list[Any]:
         """Call a plug-in's hook; exhaust it here, where its name is known."""
         try:
             with contextlib.redirect_stdout(sys.stderr):
-                offered = list(islice(hook() or (), _MOST_STRATEGIES))
+                return list(islice(hook() or (), _MOST_STRATEGIES))
         except (Exception, SystemExit) as error:
-            cause = f"{slot.hook} failed: {one_line(error)}"
-            self._failures.append(Broken(plugin, cause, slot.name))
+            cause = f"limbik_{kind}s failed: {one_line(error)}"
+            self._failures.append(Broken(plugin, cause, kind))
+            return []
+
+    def _take_format(self, plugin: Plugin, kind: str, offered: Any) -> None:
+        name = str(getattr(offered, "name", ""))
+        fault = format_fault(kind, offered)
+        if fault:
+            self._failures.append(Broken(plugin, fault, kind, name))
             return
-        for strategy in offered:
-            self._take(plugin, slot, strategy)
+        self._formats.setdefault((kind, name), []).append(OfferedFormat(offered, plugin))
 
     def _take(self, plugin: Plugin, slot: Slot, strategy: Any) -> None:
         name = str(getattr(strategy, "name", ""))
@@ -182,7 +212,11 @@ class Roster:
 
     def _clashes(self) -> Iterator[Broken]:
         """Strategies that cannot be used, since others have the same name."""
-        for (slot, name), offers in self._offers.items():
+        every: dict[tuple[str, str], Sequence[Registered | OfferedFormat]] = {
+            **self._offers,
+            **self._formats,
+        }
+        for (slot, name), offers in every.items():
             owner = offers[0].plugin
             for offer in offers[1:] if owner.built_in else offers if len(offers) > 1 else ():
                 others = [o.plugin for o in offers if o is not offer]

@@ -16,6 +16,9 @@ goals:                         # a list, or {csv: goals.csv}
   - {name: mouth, position: [1, 2, 3]}
 ```
 
+Instead of its joints a chain may name a file and a part of it, as the scene inputs of the plug-ins
+define: `chain: {urdf: robot.urdf, base: torso, end: hand}`. A file with a motion brings goals too.
+
 All faults of a file are found at once, each with line and column. Nothing here imports numba.
 """
 
@@ -29,8 +32,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from limbik.core.bodies import read_source
 from limbik.core.chain import MAX_JOINTS, Chain, Joint
 from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
+from limbik.core.formats import Body
 from limbik.core.goals import read_goals
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
@@ -61,6 +66,7 @@ class Scene:
         document: The file with its positions, to point at a place later.
         judge: Rate and thresholds for judging the motion; None where the scene has none.
         trajectory: Key points and moves, if the scene has any.
+        body: Where the chain came from, if from another file.
     """
 
     name: str
@@ -73,6 +79,18 @@ class Scene:
     document: Document
     judge: JudgeModel | None = None
     trajectory: TrajectoryModel | None = None
+    body: Body | None = None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know about a chain that came from another file."""
+        if self.body is None:
+            return ()
+        across = np.linalg.norm(self.chain.offsets[1:, :2], axis=1)
+        if self.settings.off_axis or (across <= 1e-6 * self.chain.length).all():
+            return self.body.notes
+        note = "some bones lie off their joints' Z axes: set off_axis: true in the options"
+        return (*self.body.notes, note)
 
 
 def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
@@ -104,22 +122,28 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         SceneError: With every fault that could be found.
     """
     faults: list[Fault] = list(_strategy_faults(document, registry))
+    source = read_source(document, folder, registry)
+    faults += source.faults
     model = None
     try:
-        model = SceneModel.model_validate(_checkable(document.content))
+        model = SceneModel.model_validate(_checkable(source.content))
     except ValidationError as error:
         faults += validation_faults(error, document, SceneModel)
     if model is None or faults:
         raise SceneError(shortlist(faults))
 
-    faults += _name_faults(model, document)
-    faults += _settings_faults(model, document)
-    chain = None
+    body = source.body
+    joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
+    faults += _name_faults(joints, model, document)
+    faults += _settings_faults(len(joints), model.options, document)
+    chain = body.chain if body else None
     try:
-        chain = _chain(model)
+        chain = chain or _chain(model)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
     names, goals, goal_faults = _goals(model, document, folder)
+    if body and body.goals is not None and "goals" not in document.content:
+        names, goals = body.goal_names, body.goals
     faults += goal_faults
     if chain is None or faults:
         raise SceneError(shortlist(faults))
@@ -136,6 +160,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         document,
         model.judge,
         model.trajectory,
+        body,
     )
 
 
@@ -183,17 +208,15 @@ def _key_path(key: str) -> KeyPath:
     return tuple(int(index) if index else name for index, name in parts)
 
 
-def _name_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+def _name_faults(names: Sequence[str], model: SceneModel, document: Document) -> Iterator[Fault]:
     joints: KeyPath = ("chain", "joints")
-    if not 2 <= len(model.chain.joints) <= MAX_JOINTS:
-        count = len(model.chain.joints)
-        message = f"a chain has 2 to {MAX_JOINTS} joints, this one has {count}"
+    if not 2 <= len(names) <= MAX_JOINTS:
+        message = f"a chain has 2 to {MAX_JOINTS} joints, this one has {len(names)}"
         yield document.fault("joint-count", message, joints)
-    names = [joint.name for joint in model.chain.joints]
     yield from _twice(names, joints, "joint", document)
     for name in model.fk:
         if name not in names:
-            hint = near_match(name, names) or f"known: {', '.join(names[:12])}"
+            hint = near_match(name, list(names)) or f"known: {', '.join(names[:12])}"
             message = f"no joint is called '{name}'"
             yield document.fault("unknown-joint", message, ("fk", name), hint=hint, at_key=True)
 
@@ -210,9 +233,8 @@ def _twice(
         first.setdefault(name, index)
 
 
-def _settings_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
-    """Check the options that only make sense together with the chain."""
-    count, options = len(model.chain.joints), model.options
+def _settings_faults(count: int, options: Settings, document: Document) -> Iterator[Fault]:
+    """Check the options that only make sense together with a chain of so many joints."""
     if count < 2:
         return
     if options.bend_reference >= count:

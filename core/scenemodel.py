@@ -6,7 +6,7 @@ Lengths are in the scene's own unit, angles in degrees, rotations heading, pitch
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from limbik.core.settings import Model, Settings
@@ -67,7 +67,14 @@ Length = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
 Place = Annotated[tuple[Length, Length, Length], BeforeValidator(_three)]
 Turn = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_three)]
-Range = Annotated[tuple[float, float], BeforeValidator(_range), AfterValidator(_ordered)]
+_DEGREES = {"type": "number", "minimum": -180.0, "maximum": 180.0}
+_PAIR = {"type": "array", "items": _DEGREES, "minItems": 2, "maxItems": 2}
+Range = Annotated[
+    tuple[float, float],
+    BeforeValidator(_range),
+    AfterValidator(_ordered),
+    WithJsonSchema({"anyOf": [_PAIR, _DEGREES]}),
+]
 NOWHERE = (0.0, 0.0, 0.0)
 
 

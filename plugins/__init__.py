@@ -1,4 +1,4 @@
-"""limbik's own plug-ins, one strategy a file; they use the same hooks as anyone's."""
+"""limbik's own plug-ins, one strategy or format a file; they use the same hooks as anyone's."""
 
 BUILT_IN = (
     "limbik.plugins.initial_bend.nth_root",
@@ -15,5 +15,10 @@ BUILT_IN = (
     "limbik.plugins.bank_suppression.threshold",
     "limbik.plugins.finish.none",
     "limbik.plugins.finish.newton",
+    "limbik.plugins.formats.urdf_chain",
+    "limbik.plugins.formats.bvh_chain",
+    "limbik.plugins.formats.tables",
+    "limbik.plugins.formats.bvh_out",
+    "limbik.plugins.formats.glb",
 )
 """Modules the registry loads first; a new one is added here."""

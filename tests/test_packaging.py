@@ -22,7 +22,8 @@ def modules_in_the_tree() -> set[str]:
     """Every module file the wheel must hold, relative to the root."""
     inner = {path for top in INSIDE for path in (ROOT / top).rglob("*.py")}
     top_level = set(ROOT.glob("*.py"))
-    configs = {*(ROOT / "configs").rglob("*.yaml"), *(ROOT / "configs").rglob("*.csv")}
+    endings = ("yaml", "csv", "urdf")
+    configs = {path for end in endings for path in (ROOT / "configs").rglob(f"*.{end}")}
     files = inner | top_level | configs | {ROOT / "py.typed"}
     return {path.relative_to(ROOT).as_posix() for path in files if path.exists()}
 

@@ -7,7 +7,7 @@ import pytest
 
 from limbik.core.chain import Chain, Joint
 from limbik.core.errors import InputError
-from limbik.core.frames import rotation_to_left_handed, to_left_handed
+from limbik.core.frames import Z_UP
 from limbik.plugins.paths.quaternions import double_slerp, from_matrix, slerp, to_matrix
 from limbik.trajectory import (
     KeyPoint,
@@ -67,9 +67,9 @@ def test_right_handed_poses_enter_swapped_and_keep_what_they_do() -> None:
     found = KeyPoint.from_rotation(place, turned).to_left_handed()
 
     np.testing.assert_allclose(found.position, [1, 3, 2])
-    np.testing.assert_allclose(found.rotation, rotation_to_left_handed(turned), atol=1e-12)
+    np.testing.assert_allclose(found.rotation, Z_UP.rotations(turned), atol=1e-12)
     np.testing.assert_allclose(
-        found.rotation @ to_left_handed(place), to_left_handed(turned @ place), atol=1e-12
+        found.rotation @ Z_UP.points(place), Z_UP.points(turned @ place), atol=1e-12
     )
 
 

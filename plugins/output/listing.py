@@ -6,6 +6,7 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from limbik import __version__
+from limbik.core.formats import Output, SceneInput
 from limbik.core.params import member_name
 from limbik.core.registry import Registry
 from limbik.core.roster import Plugin, Registered
@@ -29,6 +30,18 @@ def plugin_record(registry: Registry) -> dict[str, Any]:
             slot: [_strategy(name, found) for name, found in registry.strategies(slot).items()]
             for slot in SLOTS
         },
+        "formats": {
+            "scene_input": [_format(found) for found in registry.scene_inputs().values()],
+            "output": [_format(found) for found in registry.outputs().values()],
+        },
+    }
+
+
+def _format(found: SceneInput | Output) -> dict[str, Any]:
+    return {
+        "name": found.name,
+        "suffixes": list(found.suffixes),
+        "description": found.description,
     }
 
 

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.formats import Inspection
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
@@ -108,6 +109,45 @@ def print_plugins(record: dict[str, Any]) -> None:
         console.print(Text(f"\n{slot}", "bold"))
         for strategy in strategies:
             _print_strategy(console, strategy)
+    for kind, formats in record["formats"].items():
+        console.print(Text(f"\n{kind.replace('_', ' ')}", "bold"))
+        for found in formats:
+            head = Text("  ").append(found["name"], "cyan")
+            console.print(head.append(f"  ({' '.join(found['suffixes'])})  {found['description']}"))
+
+
+def print_inspection(inspection: Inspection) -> None:
+    """Print what a file holds: its joints, then chains one could solve."""
+    console = new_console()
+    console.print(Text(inspection.title, "bold"))
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for title in inspection.columns:
+        table.add_column(title)
+    for row in inspection.rows:
+        table.add_row(*map(Text, row))
+    console.print(table)
+    console.print(Text("\nchains" if inspection.chains else "\nno chain of hinges", "bold"))
+    for base, end, made_of in inspection.chains:
+        console.print(Text(f"  base: {base}, end: {end}", "cyan").append(f"  {made_of}", "default"))
+    for note in inspection.notes:
+        console.print(Text(f"note: {note}", "yellow"))
+
+
+def print_metrics(metrics: dict[str, Any]) -> None:
+    """Print what a baked motion is like, in a few lines."""
+    console = new_console()
+    frames, reached = metrics["frames"], metrics["reached"]
+    style = "green" if reached == frames else "red"
+    worst = f"largest distance {metrics['worst_distance']:.2g}"
+    console.print(
+        Text(f"{reached} of {frames} frames reached", style).append(f", {worst}", "default")
+    )
+    if metrics["max_step_joint"]:
+        step = f"largest step {metrics['max_step']:.3g}° at {metrics['max_step_joint']}"
+        console.print(f"{step}, frame {metrics['max_step_frame']}")
+    pops = metrics["pops"]
+    listed = ", ".join(map(str, pops[:10])) + (", ..." if len(pops) > 10 else "")
+    console.print(f"{len(pops)} pops" + (f" at frames {listed}" if pops else ""))
 
 
 def _print_strategy(console: Console, strategy: dict[str, Any]) -> None:

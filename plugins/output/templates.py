@@ -4,11 +4,13 @@ from pathlib import Path
 
 from limbik.core.errors import Fault, InputError
 
-TEMPLATES = ("arm", "leg", "spine", "weld")
+TEMPLATES = ("arm", "arm7", "humanoid", "leg", "spine", "weld")
+_WITH_FILES = {"arm7": "arm7.urdf", "humanoid": "humanoid.urdf"}  # what a scene is read with
+SCHEMA_FILE = "limbik.schema.json"
 
 
 def write_template(name: Path, template: str) -> Path:
-    """Write a commented scene that runs.
+    """Write a commented scene that runs, and beside it the schema that editors check it by.
 
     Args:
         name: File to write; `.yaml` is added if it has no such ending.
@@ -24,13 +26,33 @@ def write_template(name: Path, template: str) -> Path:
     from importlib.resources import files
 
     from limbik.core.wording import near_match
-    from limbik.plugins.output.files import write_new
+    from limbik.plugins.output.files import write_new, write_whole
 
     if template not in TEMPLATES:
         message = f"no template is called '{template}'; known: {', '.join(TEMPLATES)}"
         hint = near_match(template, list(TEMPLATES))
         raise InputError(Fault("choice", message, "--template", hint=hint))
     path = name if name.suffix in (".yaml", ".yml") else name.with_name(f"{name.name}.yaml")
-    text = files("limbik").joinpath("configs", f"{template}.yaml").read_text(encoding="utf-8")
-    write_new(path, text)
+    configs = files("limbik").joinpath("configs")
+    text = configs.joinpath(f"{template}.yaml").read_text(encoding="utf-8")
+    beside = _WITH_FILES.get(template)
+    if beside and not path.exists():
+        content = configs.joinpath(beside).read_bytes()
+        companion = path.with_name(beside)
+        if not companion.exists() or companion.read_bytes() != content:
+            write_new(companion, content)
+    write_new(path, f"# yaml-language-server: $schema={SCHEMA_FILE}\n{text}")
+    schema = path.with_name(SCHEMA_FILE)
+    if not schema.exists():
+        write_whole(schema, schema_text())
     return path
+
+
+def schema_text() -> str:
+    """Write the JSON Schema of scenes, with the strategies and formats installed here."""
+    import json
+
+    from limbik.core.registry import Registry
+    from limbik.core.schema import scene_schema
+
+    return json.dumps(scene_schema(Registry()), indent=2) + "\n"

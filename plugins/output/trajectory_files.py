@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core.chain import AXES, Chain
-from limbik.core.frames import rotation_to_right_handed, to_right_handed
+from limbik.core.frames import Z_UP
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.plugins.paths.joints import JointMotion
@@ -91,8 +91,8 @@ def tum_rows(samples: Samples, right_handed: bool = False) -> str:
     """
     places, turned = samples.positions, samples.quaternions
     if right_handed:
-        places = to_right_handed(places)
-        turned = continuous(from_matrix(rotation_to_right_handed(samples.rotations)))
+        places = Z_UP.points(places)
+        turned = continuous(from_matrix(Z_UP.rotations(samples.rotations)))
     table = np.column_stack([samples.times, places, turned[:, [1, 2, 3, 0]]])
     head = "# timestamp x y z qx qy qz qw\n"
     return head + "".join(" ".join(map(repr, row)) + "\n" for row in table.tolist())

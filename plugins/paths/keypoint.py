@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from limbik.core.chain import Chain
 from limbik.core.errors import Fault, InputError
-from limbik.core.frames import rotation_to_left_handed, to_left_handed
+from limbik.core.frames import Z_UP
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.plugins.paths.quaternions import from_matrix, to_matrix
@@ -105,10 +105,10 @@ class KeyPoint:
         whole[:3, :3], whole[:3, 3] = self.rotation, self.position
         return whole
 
-    def to_left_handed(self) -> "KeyPoint":
+    def Z_UP.points(self) -> "KeyPoint":
         """Return a key point given in the right-handed world with Z up in limbik's world."""
-        turned = from_matrix(rotation_to_left_handed(self.rotation))
-        return KeyPoint(to_left_handed(self.position), turned, self.name)
+        turned = from_matrix(Z_UP.rotations(self.rotation))
+        return KeyPoint(Z_UP.points(self.position), turned, self.name)
 
 
 def euler_matrix(angles: Array, convention: str, name: str = "") -> Array:

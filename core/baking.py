@@ -1,0 +1,80 @@
+"""Bake a scene: solve its goals as the frames of a motion and measure the motion (M-12)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from limbik.core.formats import Bake
+from limbik.core.mirror import mirrored_solution
+from limbik.core.motion import motion_metrics
+from limbik.core.registry import Registry
+from limbik.core.rotation import Array
+from limbik.core.scene import Scene
+from limbik.core.solution import Continuity, Solution
+from limbik.core.solver import Solver
+
+BLOCK: Final = 500  # goals solved between two reports of progress
+FRAME_TIME: Final = 1.0 / 30.0
+_ARRAYS: Final = (
+    "goal",
+    "angles",
+    "positions",
+    "rotations",
+    "iterations",
+    "distance",
+    "status",
+    "bend_vector",
+    "bend_angle",
+)
+
+
+def bake_scene(
+    scene: Scene,
+    registry: Registry | None = None,
+    *,
+    mirrored: bool = False,
+    frame_time: float | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Bake:
+    """Solve all goals of a scene in order.
+
+    Args:
+        scene: The scene; with `follow` each goal is solved from the pose before, else on its own.
+        registry: Where the strategies are looked up; a new `Registry()` if absent.
+        mirrored: Whether to exchange left and right in the result.
+        frame_time: Seconds from goal to goal; that of the scene's clip, or 1/30, if absent.
+        progress: Called with the number of goals solved so far.
+
+    Raises:
+        PluginError: A strategy failed.
+    """
+    solver = Solver(scene.chain, scene.settings, registry)
+    parts: list[Solution] = []
+    for start in range(0, len(scene.goals), BLOCK):
+        goals = scene.goals[start : start + BLOCK]
+        before = parts[-1].continuity if parts else None
+        parts.append(_solved(solver, scene, goals, before))
+        if progress is not None:
+            progress(start + len(goals))
+    solution = _joined(parts)
+    if mirrored:
+        solution = mirrored_solution(solution)
+    seconds = frame_time or (scene.body and scene.body.frame_time) or FRAME_TIME
+    metrics = motion_metrics(solution)
+    return Bake(scene, solution, seconds, mirrored, metrics.record())
+
+
+def _solved(solver: Solver, scene: Scene, goals: Array, before: Continuity | None) -> Solution:
+    if scene.follow:
+        return solver.follow(goals, fk_offsets=scene.fk_offsets, continuity=before)
+    return solver.solve_many(goals, fk_offsets=scene.fk_offsets)
+
+
+def _joined(parts: Sequence[Solution]) -> Solution:
+    """Put solutions with leading goal axes behind each other."""
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
+    }
+    return replace(parts[-1], **joined)

@@ -1,0 +1,73 @@
+"""Left and right exchanged: names, and the solution of a mirrored problem (M-14).
+
+A mirrored chain with mirrored goals has the mirrored poses for its answers, so a solution is
+mirrored instead of solved again; whatever options and strategies it was solved with, they were
+the same ones, mirrored.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from limbik.core.chain import Chain
+from limbik.core.frames import Y_UP, mirror_hpb
+from limbik.core.solution import Solution
+
+_WORDS: Final = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
+_LETTERS: Final = (("L", "R"), ("l", "r"))
+
+
+def mirrored_solution(solution: Solution) -> Solution:
+    """Return a solution mirrored in the world's YZ plane, joints named for their new side.
+
+    Args:
+        solution: With a leading goal axis or without; its trace and continuity are dropped.
+    """
+    chain = solution.chain.mirrored()
+    names = side_swapped(chain.names)
+    joints = [replace(joint, name=name) for joint, name in zip(chain.joints, names, strict=True)]
+    bend_angle = -np.asarray(solution.bend_angle)
+    return replace(
+        solution,
+        chain=Chain(joints, chain.base_position, chain.base_turn),
+        goal=Y_UP.points(solution.goal),
+        angles=mirror_hpb(solution.angles),
+        positions=Y_UP.points(solution.positions),
+        rotations=Y_UP.rotations(solution.rotations),
+        bend_vector=Y_UP.points(solution.bend_vector),
+        bend_angle=bend_angle if bend_angle.ndim else float(bend_angle),
+        continuity=None,
+        trace=None,
+    )
+
+
+def side_swapped(names: Sequence[str]) -> list[str]:
+    """Exchange left and right in names, as in LeftFoot, foot.L, l_foot, LThumb.
+
+    All stay as they are if two would become the same.
+    """
+    swapped = [_other_side(name) for name in names]
+    return swapped if len(set(swapped)) == len(set(names)) else list(names)
+
+
+def _other_side(name: str) -> str:
+    for left, right in _WORDS:
+        if left in name or right in name:
+            return _exchanged(f"{left}|{right}", name, left, right)
+    for left, right in _LETTERS:
+        letter = f"(?:{left}|{right})"
+        alone = rf"(?<![A-Za-z0-9]){letter}(?![A-Za-z0-9])"
+        first_of_words = rf"(?<![A-Za-z0-9]){letter}(?=[A-Z][a-z])"
+        between = rf"(?<=_){letter}(?=_|$)|(?<![A-Za-z0-9]){letter}(?=_)"
+        changed = _exchanged(f"{alone}|{first_of_words}|{between}", name, left, right)
+        if changed != name:
+            return changed
+    return name
+
+
+def _exchanged(pattern: str, name: str, left: str, right: str) -> str:
+    other = {left: right, right: left}
+    return re.sub(pattern, lambda found: other[found.group()], name)

@@ -1,0 +1,1 @@
+"""File formats: robots and motion clips in, motion out; one format a module."""

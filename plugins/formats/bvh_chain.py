@@ -1,0 +1,260 @@
+"""The scene input `bvh`: a chain of a motion clip, whose end's path gives the goals.
+
+```yaml
+chain: {bvh: walk.bvh, base: LeftUpLeg, end: LeftFoot, scale: 0.01, frames: [1, 600], every: 4}
+```
+
+The world of such a scene has the axes of what the base joint hangs from (the pelvis, for a leg)
+and its origin in the base joint, in every frame anew. (x, y, z) of the clip is (-x, y, z) here.
+Joint Z axes run along the bones, Y axes face ahead in the clip's zero pose, so a bend vector along
+Y takes knees and elbows forward.
+The file states no unit; `scale` makes its lengths the scene's.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
+
+from limbik.core.chain import Chain
+from limbik.core.errors import Fault, InputError
+from limbik.core.formats import Body, Inspection, Motion, SceneInput
+from limbik.core.frames import Y_UP
+from limbik.core.hooks import hookimpl
+from limbik.core.rotation import Array
+from limbik.core.settings import Model
+from limbik.core.wording import found_words, near_match
+from limbik.plugins.formats.bvh import BvhJoint, Clip, read_bvh
+from limbik.plugins.formats.bvh_motion import clip_motion, joint_offsets
+from limbik.plugins.formats.channels import matrix_to_channels
+from limbik.plugins.formats.joining import FIXED, FREE, Joined, ModelJoint, joined
+
+_SLIDES = 1e-4  # a bone may change by this part of the skeleton's size: rounding in the file
+
+
+def _two(value: Any) -> Any:
+    if isinstance(value, list | tuple) and len(value) == 2:
+        return tuple(value)
+    message = "must be a list of the first and the last frame, not {found}"
+    raise PydanticCustomError("type", message, {"found": found_words(value)})
+
+
+class BvhModel(Model):
+    """A chain of a motion clip."""
+
+    bvh: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+    base: Annotated[str, Field(min_length=1, description="joint the chain starts with")]
+    end: Annotated[str, Field(min_length=1, description="joint that follows its path in the clip")]
+    scale: Annotated[
+        float, Field(gt=0.0, le=1e6, description="scene lengths a length of the clip [-]")
+    ] = 1.0
+    frames: Annotated[
+        tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)]] | None,
+        BeforeValidator(_two),
+        Field(description="first and last frame, counted from 0; absent = all"),
+    ] = None
+    every: Annotated[int, Field(ge=1, description="take every so manieth frame")] = 1
+
+
+@dataclass(frozen=True, eq=False)
+class ClipBody(Body):
+    """A chain of a clip, with the clip to put the solved angles into.
+
+    Attributes:
+        clip: The clip, only the frames chosen; None for none.
+        scale: Scene lengths a length of the clip.
+        at: Index in the clip of each joint of the chain.
+        join: The way back to the clip's rotations.
+    """
+
+    clip: Clip | None = None
+    scale: float = 1.0
+    at: tuple[int, ...] = ()
+    join: Joined | None = None
+
+    def motion(self, angles: Array, frame_time: float) -> Motion:
+        """Return the whole skeleton's motion, the chain's turns replaced."""
+        return clip_motion(replace(self.baked(angles), frame_time=frame_time), self.scale)
+
+    def baked(self, angles: Array) -> Clip:
+        """Return the clip with the chain's angles, HPB (m, n, 3) [rad], in its channels.
+
+        The end joint keeps its channels: a solve does not turn it. So do all other joints.
+        """
+        if self.clip is None or self.join is None:
+            raise ValueError("there is no clip")
+        frames = self.clip.frames.copy()
+        own = Y_UP.rotations(self.join.own_turns(angles))
+        for k, index in enumerate(self.at[:-1]):
+            joint = self.clip.joints[index]
+            columns = list(joint.columns[len(joint.moves) :])
+            slot = self.join.slots[k]
+            if slot == FREE:
+                turns = matrix_to_channels(own[:, k], _order(joint))
+                frames[:, columns] = np.degrees(turns)
+            elif slot != FIXED:
+                value = angles[:, k, slot] + self.join.shifts[k]
+                # Right-handed about +axis is limbik's about the mirrored axis: the same number.
+                frames[:, columns] = np.degrees(value)[:, None]
+        return replace(self.clip, frames=frames)
+
+
+def _order(joint: BvhJoint) -> tuple[int, int, int]:
+    first, second, third = joint.turns
+    return first, second, third
+
+
+def read_body(model: BvhModel, folder: Path) -> ClipBody:
+    """Make a chain and goals of a clip.
+
+    Raises:
+        InputError: The file is at fault, or there is no such chain in it.
+    """
+    clip = read_bvh(folder / model.bvh)
+    at = _between(clip, model.base, model.end)
+    clip, numbers = _chosen(clip, model)
+    faults = [fault for k, index in enumerate(at[1:], 1) for fault in _slides(clip, index, k)]
+    faults += [fault for index in at[:-1] for fault in _refusals(clip, index)]
+    if faults:
+        raise InputError(faults)
+    offsets = [_offset(clip, index) * model.scale for index in at]
+    offsets[0] = np.zeros(3)
+    models = [
+        _model_joint(clip.joints[index], offset) for index, offset in zip(at, offsets, strict=True)
+    ]
+    join = joined(models)
+    goals = _path(clip, at, model.scale)
+    names = tuple(map(str, numbers))
+    return ClipBody(
+        Chain(join.joints), (), goals, names, clip.frame_time, clip, model.scale, tuple(at), join
+    )
+
+
+def _between(clip: Clip, base: str, end: str) -> list[int]:
+    """Give the indices of the joints from one down to another."""
+    names = clip.names
+    faults = []
+    for key, name in (("base", base), ("end", end)):
+        if name not in names:
+            hint = near_match(name, names) or f"joints: {', '.join(names[:12])}"
+            faults.append(Fault("unknown-joint", f"the clip has no joint '{name}'", key, hint=hint))
+    if faults:
+        raise InputError(faults)
+    way = [names.index(end)]
+    while clip.joints[way[-1]].parent >= 0:
+        way.append(clip.joints[way[-1]].parent)
+    if names.index(base) not in way[1:]:
+        above = ", ".join(names[index] for index in way[1:13]) or "nothing, it is a root"
+        message = f"the joint '{end}' does not hang from '{base}'"
+        raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
+    return way[way.index(names.index(base)) :: -1]
+
+
+def _chosen(clip: Clip, model: BvhModel) -> tuple[Clip, range]:
+    """Take the frames a scene asks for, with their numbers."""
+    count = len(clip.frames)
+    first, last = model.frames or (0, count - 1)
+    if not first <= last < count:
+        message = f"frames {first} to {last}: the clip has 0 to {count - 1}"
+        message = message if count else "the clip has no frames"
+        raise InputError(Fault("range", message, "frames" if model.frames else "bvh"))
+    numbers = range(first, last + 1, model.every)
+    taken = replace(
+        clip, frames=clip.frames[list(numbers)], frame_time=clip.frame_time * model.every
+    )
+    return taken, numbers
+
+
+def _slides(clip: Clip, index: int, place: int) -> list[Fault]:
+    """Refuse a joint whose position channels change the bone before it."""
+    joint = clip.joints[index]
+    if not joint.moves:
+        return []
+    offsets = joint_offsets(clip, joint)
+    change = float(np.ptp(offsets, axis=0).max())
+    size = max(float(np.abs([other.offset for other in clip.joints]).max()), 1e-9)
+    if change <= _SLIDES * size:
+        return []
+    message = f"joint '{joint.name}' slides by up to {change:.4g}; limbik's bones keep their length"
+    return [Fault("slides", message, "", clip.file, joint.line, hint="choose a base below it")]
+
+
+def _refusals(clip: Clip, index: int) -> list[Fault]:
+    joint = clip.joints[index]
+    if len(joint.turns) != 2:
+        return []
+    message = f"joint '{joint.name}' has two rotation channels; limbik takes none, one or three"
+    return [Fault("channel", message, "", clip.file, joint.line)]
+
+
+def _offset(clip: Clip, index: int) -> Array:
+    """A joint's lasting offset, in limbik's axes."""
+    return Y_UP.points(joint_offsets(clip, clip.joints[index]).mean(axis=0))
+
+
+def _model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
+    still = np.eye(3)
+    if len(joint.turns) == 1:
+        axis = Y_UP.points(np.eye(3)[joint.turns[0]])
+        return ModelJoint(joint.name, offset, still, "hinge", axis)
+    return ModelJoint(joint.name, offset, still, "free" if joint.turns else "fixed")
+
+
+def _path(clip: Clip, at: list[int], scale: float) -> Array:
+    """Where the end is, seen from what the base hangs from, (m, 3)."""
+    motion = clip_motion(clip, scale)
+    place = np.zeros((len(clip.frames), 3))
+    for index in reversed(at[1:]):
+        place = motion.offsets[:, index] + place
+        place = (motion.turns[:, clip.joints[index].parent] @ place[..., None])[..., 0]
+    return place
+
+
+def inspect(path: Path) -> Inspection:
+    """Say what a clip holds.
+
+    Raises:
+        InputError: The file is at fault.
+    """
+    clip = read_bvh(path)
+    seconds = len(clip.frames) * clip.frame_time
+    title = f"motion clip: {len(clip.joints)} joints, {len(clip.frames)} frames, {seconds:.4g} s"
+    rows = []
+    for joint in clip.joints:
+        parent = clip.joints[joint.parent].name if joint.parent >= 0 else ""
+        offset = " ".join(f"{value:.4g}" for value in joint.offset)
+        rows.append((joint.name, parent, offset, " ".join(joint.channels)))
+    return Inspection(
+        title,
+        ("joint", "parent", "offset", "channels"),
+        tuple(rows),
+        tuple(_candidates(clip)),
+        ("a clip states no unit: choose `scale` so that lengths become yours",),
+    )
+
+
+def _candidates(clip: Clip) -> Iterable[tuple[str, str, str]]:
+    """Chains from where branches part to their tips or the next parting, two bones or more."""
+    parents = [joint.parent for joint in clip.joints]
+    for tip, joint in enumerate(clip.joints):
+        if parents.count(tip) == 1:
+            continue
+        way = [tip]
+        while (parent := clip.joints[way[-1]].parent) >= 0:
+            if parents.count(parent) > 1 and len(way) > 2:
+                break
+            way.append(parent)
+        names = [clip.joints[index].name for index in reversed(way)]
+        if len(names) > 2:
+            yield names[0], joint.name, f"{len(names)} joints: {', '.join(names)}"
+
+
+@hookimpl
+def limbik_scene_inputs() -> Iterable[SceneInput]:
+    """Offer `bvh`."""
+    sentence = "A chain of a motion clip, with the path of its end."
+    return [SceneInput("bvh", (".bvh",), BvhModel, read_body, inspect, sentence, has_goals=True)]
