@@ -264,17 +264,22 @@ class _Reader:
         rows = [(n, row) for n, row in enumerate(self._lines[self._line :], self._line + 1)]
         rows = [(n, row) for n, row in rows if row.strip()]
         if not self._columns:
-            rows = []
-        split = [row.split() for _, row in rows]
-        if len(rows) == count and all(len(words) == self._columns for words in split):
-            try:
-                values = np.array(split, np.float64).reshape(count, self._columns)
-            except ValueError:
-                values = np.full((1, 1), np.nan)
-            plain = not any("_" in row for _, row in rows)
-            if plain and (np.abs(values) <= FARTHEST).all():
-                return values
+            return np.empty((count, 0))
+        if len(rows) == count and (values := self._numbers([row for _, row in rows])) is not None:
+            return values
         raise self._frame_fault(rows, count)
+
+    def _numbers(self, rows: list[str]) -> Array | None:
+        """Read the frames at once; None if there is a fault anywhere."""
+        if not rows:
+            return np.empty((0, self._columns))
+        try:
+            values = np.loadtxt(rows, np.float64, comments=None, ndmin=2)
+        except ValueError:
+            return None
+        plain = not any("_" in row for row in rows)
+        fits = values.shape == (len(rows), self._columns)
+        return values if plain and fits and (np.abs(values) <= FARTHEST).all() else None
 
     def _frame_fault(self, rows: list[tuple[int, str]], count: int) -> InputError:
         for number, row in rows[:count]:

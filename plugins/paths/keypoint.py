@@ -105,7 +105,7 @@ class KeyPoint:
         whole[:3, :3], whole[:3, 3] = self.rotation, self.position
         return whole
 
-    def Z_UP.points(self) -> "KeyPoint":
+    def to_left_handed(self) -> "KeyPoint":
         """Return a key point given in the right-handed world with Z up in limbik's world."""
         turned = from_matrix(Z_UP.rotations(self.rotation))
         return KeyPoint(Z_UP.points(self.position), turned, self.name)
