@@ -95,7 +95,7 @@ def crane(tmp_path: Path) -> Path:
 def _urdf_pose(path: Path, base: str, end: str, values: dict[str, float]) -> tuple[Array, Array]:
     """Position and rotation of a link seen from another, by plain right-handed matrices."""
     pose = np.eye(4)
-    every: list[Any] = list(ElementTree.parse(path).iter("joint"))
+    every: list[Any] = ElementTree.parse(path).getroot().findall("joint")
     joints = {joint.find("child").get("link"): joint for joint in every}
     while end != base:
         joint = joints[end]
