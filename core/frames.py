@@ -38,13 +38,13 @@ class Axes:
     def points(self, points: ArrayLike) -> Array:
         """Change points, directions or hinge axes, (..., 3); the same both ways."""
         given = np.asarray(points, np.float64)
-        return np.asarray(given[..., self.order] * np.array(self.signs) + 0.0)
+        return np.ascontiguousarray(given[..., self.order] * np.array(self.signs) + 0.0)
 
     def rotations(self, matrices: ArrayLike) -> Array:
         """Change rotation matrices, (..., 3, 3); the same both ways."""
         given = np.asarray(matrices, np.float64)
         swapped = given[..., self.order, :][..., self.order]
-        return swapped * np.outer(self.signs, self.signs) + 0.0
+        return np.ascontiguousarray(swapped * np.outer(self.signs, self.signs) + 0.0)
 
 
 Z_UP: Final = Axes("right-handed, Z up", (0, 2, 1), (1.0, 1.0, 1.0))
