@@ -73,8 +73,7 @@ def plain(kernel: Callable[..., Any]) -> Callable[..., Any]:
 
 def solver(chain: Chain, **options: Any) -> Solver:
     """Return a solver of the bare document's stages, with the built-in strategies only."""
-    bare = {"finish": "none"} if "finish" in Settings.model_fields else {}
-    return Solver(chain, Settings(**(bare | options)), REGISTRY)
+    return Solver(chain, Settings(**({"finish": "none"} | options)), REGISTRY)
 
 
 LIMB = ball(20.0, 20.0, 20.0)
@@ -235,5 +234,9 @@ OPTIONS = st.fixed_dictionaries(
         "reach_limit": st.booleans(),
         "clamp": st.sampled_from(["re-aim", "plain"]),
         "fk_mix": st.floats(0.0, 1.0),
+        "initial_bend": st.sampled_from(["nth-root", "solved-arc", "uniform-arc", "two-bone"]),
+        "finish": st.sampled_from(["none", "newton"]),
+        "start": st.sampled_from(["bend", "current"]),
+        "soft_zone": st.floats(0.0, 0.2),
     },
 )
