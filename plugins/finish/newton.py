@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 
 FULL_EFFORT_JOINTS = 8  # chains up to this long get all retries
 LEAST_RETRIES = 4
+STEADINESS = 0.002  # share of the length by which a later start must be nearer
 
 
 class Newton(NamedTuple):
@@ -67,7 +68,10 @@ def newton(
     verdict[0] = 0.0
     if nearest >= tolerance:
         retries = _affordable(params.retries, angles.shape[0]) if reachable else 2
-        nearest = _search(point, aimed, tolerance, nearest, retries, params.steps, chain, scratch)
+        margin = STEADINESS * length
+        nearest = _search(
+            point, aimed, tolerance, margin, nearest, retries, params.steps, chain, scratch
+        )
         verdict[0] = 1.0
     for joint in range(angles.shape[0]):
         for axis in range(3):
@@ -88,19 +92,24 @@ def _search(
     goal: Vector,
     aimed: float,
     tolerance: float,
+    margin: float,
     nearest: float,
     retries: int,
     steps: int,
     chain: Linkage,
     scratch: Array,
 ) -> float:
-    """Try other starts until one reaches the goal; leave the nearest pose in BEST."""
+    """Try other starts until one reaches the goal; leave the nearest pose in BEST.
+
+    Where none does, many folds end about equally near. An earlier start stays the answer until a
+    later one is nearer by a margin, so that the pose does not jump between equals along a path.
+    """
     for attempt in range(retries):
         _start(attempt, chain, scratch)
         for _ in range(2):
             sweep(goal, chain, scratch)
         distance = descend(goal, aimed, steps, chain, scratch)
-        if distance < nearest - 1e-12:
+        if distance < tolerance or distance < nearest - margin:
             nearest = distance
             copy_columns(ANGLES, BEST, scratch)
         if nearest < tolerance:
