@@ -22,7 +22,7 @@ import numpy as np
 from pydantic import Field, ValidationError
 
 from limbik.core.chain import AXES, Chain
-from limbik.core.errors import Fault, InputError, SceneError
+from limbik.core.errors import Fault, InputError, SceneError, shortlist
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Model
@@ -155,6 +155,22 @@ class Profile:
         positions, _ = forward_kinematics(solution.chain, achieved)
         distance = float(np.linalg.norm(positions[-1] - solution.goal))
         return ServoPose(tuple(commands), achieved, positions[-1], distance)
+
+    def quantise_all(self, names: Sequence[str], solutions: Sequence[Solution]) -> list[ServoPose]:
+        """Turn the solutions of named goals into servo commands.
+
+        Raises:
+            InputError: With every joint of every goal that its servo cannot follow.
+        """
+        poses, faults = [], list[Fault]()
+        for name, solution in zip(names, solutions, strict=True):
+            try:
+                poses.append(self.quantise(solution, name))
+            except InputError as error:
+                faults += error.faults
+        if faults:
+            raise InputError(shortlist(faults))
+        return poses
 
     def angles(self, ticks: Mapping[int, int], chain: Chain) -> Array:
         """Return the pose that ticks by servo number stand for, HPB, (n, 3) [rad].

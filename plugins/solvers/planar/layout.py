@@ -47,5 +47,8 @@ METHODS = (
 )
 """Names of the sweeps, in the order of their numbers; the first seven are the article's."""
 
+ARTICLE = METHODS[:7]
+"""Those of the article."""
+
 CCD, CCD_LIMIT, CCD_CHASE, FABRIK, FABRIK_LIMIT, FABRIK_FORWARD, FABRIK_CHILD = range(7)
 CCD_NEAREST, FABRIK_BOTH = 7, 8
