@@ -21,6 +21,7 @@ BUILT_IN = (
     "limbik.plugins.formats.bvh_out",
     "limbik.plugins.formats.glb",
     "limbik.plugins.solvers.cosine_arm.solver",
+    "limbik.plugins.solvers.fabrik.solver",
     "limbik.plugins.solvers.lambda_leg.solver",
     "limbik.plugins.solvers.planar.solver",
 )
