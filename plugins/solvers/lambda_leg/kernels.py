@@ -19,7 +19,9 @@ BRANCHES = 8
 
 
 @kernel
-def find_branches(thigh: float, shin: float, pose: Array, hint: Array, out: Array) -> int:
+def find_branches(
+    thigh: float, shin: float, pose: Array, hint: Array, bends: tuple[float, float], out: Array
+) -> tuple[int, int, int]:
     """Find all joint angles that put the ankle and the foot where they shall be.
 
     The ankle seen from the foot is Ry(j6) Rx(j5) w with w known from the knee alone, which gives
@@ -31,11 +33,13 @@ def find_branches(thigh: float, shin: float, pose: Array, hint: Array, out: Arra
         shin: Length l2 [length].
         pose: Ankle position and the rows of the foot's rotation, torso's frame, (4, 3).
         hint: j1 to j6 that undetermined angles keep, (6,) [rad].
+        bends: Range of j4 [rad]. Where it holds one of the two knee angles only, the four branches
+            of the other are not made.
         out: OUT: (8, 8): j1 to j6 [rad], flags of what is not determined, 1 if it repeats another
             branch; knee forward first, then foot below the shin, then thigh down.
 
     Returns:
-        `OK`, `TOO_FAR` or `TOO_NEAR`.
+        `OK`, `TOO_FAR` or `TOO_NEAR`, and the first row made and the row behind the last.
     """
     px, py, pz = pose[0, 0], pose[0, 1], pose[0, 2]
     distance = sqrt(px * px + py * py + pz * pz)
@@ -60,7 +64,11 @@ def find_branches(thigh: float, shin: float, pose: Array, hint: Array, out: Arra
     qy = pose[1, 1] * px + pose[2, 1] * py + pose[3, 1] * pz
     qz = pose[1, 2] * px + pose[2, 2] * py + pose[3, 2] * pz
     bend = atan2(sine, cosine)
-    for knee in range(2):
+    ahead = bends[0] - ANGLE_SLACK <= bend <= bends[1] + ANGLE_SLACK
+    behind = bends[0] - ANGLE_SLACK <= -bend <= bends[1] + ANGLE_SLACK
+    first = 1 if behind and not ahead else 0
+    last = 1 if ahead and not behind else 2
+    for knee in range(first, last):
         forward = knee == 0
         _ankle_branches(
             (thigh, shin),
@@ -71,7 +79,7 @@ def find_branches(thigh: float, shin: float, pose: Array, hint: Array, out: Arra
             out,
             4 * knee,
         )
-    return state
+    return state, 4 * first, 4 * last
 
 
 @kernel
@@ -223,11 +231,14 @@ def _gimbal(
 
 
 @kernel
-def choose(found: Array, near: Array, low: Array, high: Array) -> tuple[int, float]:
+def choose(
+    found: Array, rows: tuple[int, int], near: Array, low: Array, high: Array
+) -> tuple[int, float]:
     """Pick the branch within limits that is nearest to a pose.
 
     Args:
         found: Branches as `find_branches` fills them.
+        rows: First of them and the one behind the last.
         near: The pose, (6,) [rad].
         low: Limits, (6,) [rad]; -inf where free.
         high: Limits, (6,) [rad].
@@ -235,8 +246,8 @@ def choose(found: Array, near: Array, low: Array, high: Array) -> tuple[int, flo
     Returns:
         Its index and by how much it breaks the limits [rad]; if all do, that which does least.
     """
-    best, least, shortest = 0, inf, inf
-    for branch in range(found.shape[0]):
+    best, least, shortest = rows[0], inf, inf
+    for branch in range(rows[0], rows[1]):
         excess, way = 0.0, 0.0
         for joint in range(6):
             angle = found[branch, joint]
@@ -255,7 +266,7 @@ def choose(found: Array, near: Array, low: Array, high: Array) -> tuple[int, flo
 @entry
 def branches(thigh: float, shin: float, pose: Array, hint: Array, out: Array) -> int:
     """As `find_branches`, for Python."""
-    return find_branches(thigh, shin, pose, hint, out)
+    return find_branches(thigh, shin, pose, hint, (-inf, inf), out)[0]
 
 
 @entry
@@ -284,8 +295,10 @@ def solve_poses(
         codes: OUT: `OK`, `TOO_FAR`, `TOO_NEAR` or `BEYOND_LIMITS`, then flags, (m, 2).
     """
     for row in range(poses.shape[0]):
-        state = find_branches(lengths[0], lengths[1], poses[row], near, found)
-        branch, excess = choose(found, near, low, high)
+        state, first, last = find_branches(
+            lengths[0], lengths[1], poses[row], near, (low[3], high[3]), found
+        )
+        branch, excess = choose(found, (first, last), near, low, high)
         if state == OK and excess > 0.0:
             state = BEYOND_LIMITS
         for joint in range(6):
