@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from limbik import __version__
+from limbik.plugins.output.compare_command import compare
 from limbik.plugins.output.failures import reported
 from limbik.plugins.output.templates import TEMPLATES, write_template
 
@@ -62,6 +63,9 @@ def solve(
     plot: Annotated[
         Path | None, typer.Option(help="Draw the poses to a .png, .svg or .pdf file.")
     ] = None,
+    servo: Annotated[
+        str | None, typer.Option(help="Show servo ticks too: ax-12, or a profile (YAML).")
+    ] = None,
     trace: Annotated[
         bool, typer.Option("--trace", help="Put every stage's pose into the JSON.")
     ] = False,
@@ -85,7 +89,13 @@ def solve(
             from limbik.plugins.output.plot import check_plot
 
             check_plot(plot)
+        profile = None
+        if servo is not None:
+            from limbik.plugins.output.servo import read_profile
+
+            profile = read_profile(servo, read.chain)
         solutions = _solve_all(read, registry, trace=trace or plot is not None)
+        poses = [] if profile is None else profile.quantise_all(read.goal_names, solutions)
         if csv is not None:
             write_whole(csv, solve_rows(read, solutions))
         if plot is not None:
@@ -93,13 +103,17 @@ def solve(
 
             write_whole(plot, draw(read, solutions, plot.suffix.lower().lstrip(".")))
         if as_json:
-            typer.echo(to_json(solve_record(read, solutions, stages=trace)))
+            typer.echo(to_json(solve_record(read, solutions, stages=trace, servos=poses)))
         else:
-            from limbik.plugins.output.table import print_solutions
+            from limbik.plugins.output.table import print_servos, print_solutions
 
             print_solutions(read, solutions)
+            print_servos(read, poses)
         if not are_met(read, solutions):
             raise SystemExit(1)
+
+
+app.command()(compare)
 
 
 @app.command()

@@ -14,6 +14,7 @@ from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
+from limbik.core.whole import prepare
 
 BLOCK: Final = 500  # goals solved between two reports of progress
 FRAME_TIME: Final = 1.0 / 30.0
@@ -50,6 +51,22 @@ def bake_scene(
     Raises:
         PluginError: A strategy failed.
     """
+    if scene.solver is not None:
+        parts = [prepare(scene.solver, scene.chain, scene.settings)(scene.goals, scene.follow)]
+    else:
+        parts = _blocks(scene, registry, progress)
+    solution = _joined(parts)
+    if mirrored:
+        solution = mirrored_solution(solution)
+    seconds = frame_time or (scene.body and scene.body.frame_time) or FRAME_TIME
+    metrics = motion_metrics(solution)
+    return Bake(scene, solution, seconds, mirrored, metrics.record())
+
+
+def _blocks(
+    scene: Scene, registry: Registry | None, progress: Callable[[int], None] | None
+) -> list[Solution]:
+    """Solve the goals block by block with limbik's own solver."""
     solver = Solver(scene.chain, scene.settings, registry)
     parts: list[Solution] = []
     for start in range(0, len(scene.goals), BLOCK):
@@ -58,12 +75,7 @@ def bake_scene(
         parts.append(_solved(solver, scene, goals, before))
         if progress is not None:
             progress(start + len(goals))
-    solution = _joined(parts)
-    if mirrored:
-        solution = mirrored_solution(solution)
-    seconds = frame_time or (scene.body and scene.body.frame_time) or FRAME_TIME
-    metrics = motion_metrics(solution)
-    return Bake(scene, solution, seconds, mirrored, metrics.record())
+    return parts
 
 
 def _solved(solver: Solver, scene: Scene, goals: Array, before: Continuity | None) -> Solution:

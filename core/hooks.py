@@ -244,3 +244,40 @@ def limbik_outputs() -> Iterable[Output]:
         ```
     """
     raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_solvers() -> Iterable[Strategy]:
+    """Offer whole solvers, which scenes choose by `solver: name`.
+
+    The kernel is a Python function `(chain, settings, params)`; it raises `ChainError` if it does
+    not solve this kind of chain and returns a function `(goals, follow) -> Solution`, see
+    `limbik.core.whole`.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        import numpy as np
+
+        import limbik
+        from limbik.core.whole import assemble
+
+
+        def lazy(chain, settings, params):
+            def solve(goals, follow):
+                count = len(goals)
+                angles = np.repeat(chain.rest[None], count, axis=0)
+                stopped, none = np.ones(count, np.int64), np.zeros(count, np.int64)
+                return assemble(chain, goals, angles, stopped, none, ["rests"] * count)
+
+            return solve
+
+
+        @limbik.hookimpl
+        def limbik_solvers():
+            return [limbik.Strategy("lazy", lazy, description="Stay in the rest pose.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called

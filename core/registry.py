@@ -17,7 +17,7 @@ from limbik.core.errors import PluginError
 from limbik.core.formats import Output, SceneInput
 from limbik.core.params import read
 from limbik.core.roster import Broken, Plugin, Registered, Roster, entry_points
-from limbik.core.slots import SLOTS
+from limbik.core.slots import HOOKED
 
 _BUILT_IN_PACKAGE = "limbik.plugins"
 
@@ -94,7 +94,7 @@ class Registry:
             KeyError: There is no such slot.
         """
         self._load_third_party()
-        known = self._roster.strategies(SLOTS[slot].name)
+        known = self._roster.strategies(HOOKED[slot].name)
         return {name: known[name] for name in sorted(known)}
 
     def find(self, slot: str, name: str) -> Registered:
@@ -104,7 +104,7 @@ class Registry:
             InputError: There is none of that name.
             PluginError: There would be one, but it does not work, or two plug-ins offer it.
         """
-        known = self._roster.strategies(SLOTS[slot].name)
+        known = self._roster.strategies(HOOKED[slot].name)
         if name not in known:
             self._load_third_party()
             known = self._roster.strategies(slot)

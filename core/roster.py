@@ -12,7 +12,7 @@ import pluggy
 
 from limbik.core import hooks
 from limbik.core.formats import FORMAT_HOOKS, Output, SceneInput, format_fault
-from limbik.core.slots import SLOTS, Slot
+from limbik.core.slots import HOOKED, Slot
 from limbik.core.strategy import Strategy
 from limbik.core.trial import examine
 
@@ -110,7 +110,7 @@ def one_line(error: BaseException) -> str:
 def _implementations(manager: pluggy.PluginManager) -> dict[str, Callable[[], Any]]:
     """The implemented hooks of a manager that holds one plug-in."""
     found = {}
-    kinds = [slot.hook for slot in SLOTS.values()] + [hook for hook, _ in FORMAT_HOOKS.values()]
+    kinds = [slot.hook for slot in HOOKED.values()] + [hook for hook, _ in FORMAT_HOOKS.values()]
     for hook in kinds:
         for implementation in getattr(manager.hook, hook).get_hookimpls():
             found[hook] = implementation.function
@@ -174,7 +174,7 @@ class Roster:
             return
         plugin = replace(plugin, hooks=tuple(sorted(implemented)))
         self.plugins.append(plugin)
-        for slot in SLOTS.values():
+        for slot in HOOKED.values():
             if slot.hook in implemented:
                 for strategy in self._offered(plugin, slot.name, implemented[slot.hook]):
                     self._take(plugin, slot, strategy)

@@ -8,6 +8,7 @@ chain:
     - {name: shoulder, heading: [-130, 60], pitch: [-85, 85], bank: [-90, 90]}
     - {name: elbow, offset: [0, 0, 30], heading: 0, pitch: [0, 145], bank: [-80, 80]}
     - {name: wrist, offset: [0, 0, 26]}
+solver: 3d                     # optional: a whole solver by name, such as lambda-leg
 options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, keys of Settings
 fk: {elbow: [0, 15, 0]}        # optional FK offsets
 follow: false                  # optional: solve the goals as a path
@@ -32,6 +33,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from limbik.core.binding import Bound
 from limbik.core.bodies import read_source
 from limbik.core.chain import MAX_JOINTS, Chain, Joint
 from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
@@ -41,9 +43,10 @@ from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
 from limbik.core.settings import Settings
-from limbik.core.slots import SLOTS
+from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
+from limbik.core.whole import BUILT_IN_3D, prepare
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
@@ -67,6 +70,7 @@ class Scene:
         judge: Rate and thresholds for judging the motion; None where the scene has none.
         trajectory: Key points and moves, if the scene has any.
         body: Where the chain came from, if from another file.
+        solver: The whole solver chosen; None for limbik's own in 3D.
     """
 
     name: str
@@ -80,6 +84,7 @@ class Scene:
     judge: JudgeModel | None = None
     trajectory: TrajectoryModel | None = None
     body: Body | None = None
+    solver: Bound | None = None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -136,9 +141,10 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
     faults += _name_faults(joints, model, document)
     faults += _settings_faults(len(joints), model.options, document)
-    chain = body.chain if body else None
+    chain, solver = body.chain if body else None, None
     try:
         chain = chain or _chain(model)
+        solver = None if faults else _solver(model, chain, registry)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
     names, goals, goal_faults = _goals(model, document, folder)
@@ -161,12 +167,26 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         model.judge,
         model.trajectory,
         body,
+        solver,
     )
+
+
+def require_own_solver(scene: Scene, what: str) -> None:
+    """Refuse a scene that chooses a solver of a plug-in, where only limbik's own will do.
+
+    Raises:
+        SceneError: It does.
+    """
+    if scene.solver is not None:
+        message = f"{what} needs limbik's own solver, 3d, not '{scene.solver.name}'"
+        raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
 
 
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:
     """Give the slots a scene chooses a strategy for, unchecked."""
     options = content.get("options") if isinstance(content, dict) else None
+    if isinstance(content, dict) and content.get(SOLVER.name, BUILT_IN_3D) != BUILT_IN_3D:
+        yield SOLVER.name, content[SOLVER.name]
     if isinstance(options, dict):
         yield from ((slot, options[slot]) for slot in SLOTS if slot in options)
 
@@ -176,7 +196,9 @@ def _checkable(content: Any) -> Any:
     nameless = [
         slot
         for slot, choice in _choices(content)
-        if isinstance(choice, dict) and not isinstance(choice.get("use"), str)
+        if slot != SOLVER.name
+        and isinstance(choice, dict)
+        and not isinstance(choice.get("use"), str)
     ]
     if not nameless:
         return content
@@ -195,7 +217,8 @@ def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[
         except InputError as error:
             for fault in error.faults:
                 key = "use" if fault.code == "unknown-strategy" else fault.key
-                path: KeyPath = ("options", slot, *_key_path(key))
+                place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
+                path = (*place, *_key_path(key))
                 at_key = fault.code == "unknown-key"
                 yield document.fault(
                     fault.code, fault.message, path, hint=fault.hint, at_key=at_key
@@ -251,6 +274,15 @@ def _chain(model: SceneModel) -> Chain:
     base = model.chain.base
     turn = tuple(np.radians(base.rotation).tolist())
     return Chain([_joint(joint) for joint in model.chain.joints], base.position, turn)
+
+
+def _solver(model: SceneModel, chain: Chain, registry: Registry | None) -> Bound | None:
+    """Bind the scene's solver; it refuses chains it does not solve."""
+    if model.solver == BUILT_IN_3D:
+        return None
+    bound = (registry or Registry()).bind(SOLVER.name, model.solver)
+    prepare(bound, chain, model.options)
+    return bound
 
 
 def _joint(joint: JointModel) -> Joint:

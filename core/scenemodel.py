@@ -131,6 +131,14 @@ def _goals_form(value: Any) -> str:
     return "csv" if isinstance(value, dict) else "list"
 
 
+def _chosen(value: Any) -> Any:
+    """Refuse what names no solver; the registry says more about the rest."""
+    if isinstance(value, str | dict):
+        return value
+    message = "must be a solver's name or a mapping, not {found}"
+    raise PydanticCustomError("type", message, {"found": found_words(value)})
+
+
 class SceneModel(Model):
     """A whole scene file."""
 
@@ -138,6 +146,9 @@ class SceneModel(Model):
         Literal[1], BeforeValidator(_version), Field(description="version of the format")
     ]
     chain: ChainModel
+    solver: Annotated[
+        Any, AfterValidator(_chosen), Field(description="name of the solver, or {use: name, ...}")
+    ] = "3d"
     options: Settings = Settings()
     fk: Annotated[
         dict[str, Turn],

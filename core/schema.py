@@ -7,8 +7,9 @@ from limbik.core.formats import SceneInput
 from limbik.core.params import member_name
 from limbik.core.registry import Registry
 from limbik.core.scenemodel import SceneModel
-from limbik.core.slots import SLOTS
+from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.strategy import Parameter, Strategy, layout
+from limbik.core.whole import BUILT_IN_3D
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _WORDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
@@ -28,6 +29,10 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
     for slot in SLOTS:
         found = registry.strategies(slot)
         options[slot] |= _choice(slot, [found[name].strategy for name in found])
+    solvers = registry.strategies(SOLVER.name).values()
+    choice = _choice(SOLVER.name, [found.strategy for found in solvers])
+    choice["anyOf"].insert(0, {"const": BUILT_IN_3D})
+    schema["properties"][SOLVER.name] |= choice
     inputs = list(registry.scene_inputs().values())
     chains = [schema["properties"]["chain"]]
     for found_input in inputs:

@@ -234,6 +234,21 @@ SLOTS: dict[str, Slot] = {
     slot.name: slot for slot in (INITIAL_BEND, BEND_VECTOR, ROOT_CONTROL, BANK_SUPPRESSION, FINISH)
 }
 
+SOLVER = Slot(
+    "solver",
+    "limbik_solvers",
+    (
+        Argument("chain", "params", "the chain"),
+        Argument("settings", "params", "the options of the solve"),
+        _PARAMS,
+    ),
+    list,
+)
+"""Not a step but a whole solve, in Python: see `limbik.core.whole`."""
+
+HOOKED: dict[str, Slot] = {**SLOTS, SOLVER.name: SOLVER}
+"""All that plug-ins can offer: the slots and whole solvers."""
+
 
 def __getattr__(name: str) -> Any:
     """Load the callers on first use: they need the compiler, everything else here does not."""

@@ -166,6 +166,11 @@ class Solution:
         """Whether the end is on the goal; (m,) for many."""
         return self.status == Status.REACHED
 
+    @property
+    def remark(self) -> str:
+        """What a reader should know beside the status; empty for limbik's own solvers."""
+        return ""
+
     def limits_touched(self) -> tuple[str, ...]:
         """Return the joint axes that rest on an end of their range, like `elbow pitch`.
 

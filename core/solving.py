@@ -8,6 +8,7 @@ from limbik.core.registry import Registry
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution, Status
 from limbik.core.solver import Solver
+from limbik.core.whole import WholeSolution, prepare
 
 
 def solve_scene(
@@ -26,6 +27,9 @@ def solve_scene(
     Raises:
         PluginError: A strategy failed.
     """
+    if scene.solver is not None:
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        return list(_singles(batch(scene.goals, scene.follow)))
     solver = Solver(scene.chain, scene.settings, registry)
     if not trace:
         many = solver.follow if scene.follow else solver.solve_many
@@ -47,7 +51,8 @@ def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:
 def _singles(many: Solution) -> Iterator[Solution]:
     """Take a solution with a leading goal axis apart."""
     for k in range(len(many.goal)):
-        yield Solution(
+        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
+        yield WholeSolution(
             many.chain,
             many.goal[k],
             many.angles[k],
@@ -58,4 +63,5 @@ def _singles(many: Solution) -> Iterator[Solution]:
             Status(int(np.asarray(many.status)[k])),
             many.bend_vector[k],
             float(np.asarray(many.bend_angle)[k]),
+            notes=notes,
         )

@@ -50,7 +50,7 @@ class Strategy:
     """
 
     name: str
-    kernel: Callable[..., None]
+    kernel: Callable[..., Any]
     params: type[Any] = NoParams
     description: str = ""
     check: Callable[[Any], None] | None = None

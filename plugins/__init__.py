@@ -20,5 +20,9 @@ BUILT_IN = (
     "limbik.plugins.formats.tables",
     "limbik.plugins.formats.bvh_out",
     "limbik.plugins.formats.glb",
+    "limbik.plugins.solvers.cosine_arm.solver",
+    "limbik.plugins.solvers.fabrik.solver",
+    "limbik.plugins.solvers.lambda_leg.solver",
+    "limbik.plugins.solvers.planar.solver",
 )
 """Modules the registry loads first; a new one is added here."""

@@ -8,7 +8,7 @@ import numpy as np
 from limbik.core.chain import Chain
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scene import Scene
+from limbik.core.scene import Scene, require_own_solver
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solver import Solver
@@ -92,6 +92,7 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
         registry: Where the strategies are looked up; a new one if absent.
     """
     rate = RATE if scene.judge is None else scene.judge.rate
+    require_own_solver(scene, "limbik judge")
     solver = Solver(scene.chain, scene.settings, registry)
     many = solver.follow if scene.follow else solver.solve_many
     solution = many(scene.goals, fk_offsets=scene.fk_offsets)

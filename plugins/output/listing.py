@@ -10,7 +10,7 @@ from limbik.core.formats import Output, SceneInput
 from limbik.core.params import member_name
 from limbik.core.registry import Registry
 from limbik.core.roster import Plugin, Registered
-from limbik.core.slots import SLOTS
+from limbik.core.slots import HOOKED
 from limbik.core.strategy import Parameter, layout
 
 _SIGNS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
@@ -28,7 +28,7 @@ def plugin_record(registry: Registry) -> dict[str, Any]:
         ],
         "slots": {
             slot: [_strategy(name, found) for name, found in registry.strategies(slot).items()]
-            for slot in SLOTS
+            for slot in HOOKED
         },
         "formats": {
             "scene_input": [_format(found) for found in registry.scene_inputs().values()],

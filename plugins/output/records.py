@@ -17,6 +17,7 @@ from limbik.core.errors import Fault, InputError, LimbikError, PluginError
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solving import are_met
+from limbik.plugins.output.servo import ServoPose
 
 SCHEMA = 1
 
@@ -27,7 +28,10 @@ def to_json(record: dict[str, Any]) -> str:
 
 
 def solve_record(
-    scene: Scene, solutions: Sequence[Solution], stages: bool = False
+    scene: Scene,
+    solutions: Sequence[Solution],
+    stages: bool = False,
+    servos: Sequence[ServoPose] = (),
 ) -> dict[str, Any]:
     """Describe what became of every goal of a scene.
 
@@ -35,15 +39,19 @@ def solve_record(
         scene: The scene.
         solutions: One solution a goal.
         stages: Whether to put in the pose of every stage; the solutions need their traces then.
+        servos: One servo pose a goal, or none.
     """
+    goals = [
+        _goal_record(name, solution, stages)
+        for name, solution in zip(scene.goal_names, solutions, strict=True)
+    ]
+    for record, pose in zip(goals, servos, strict=False):
+        record["servo"] = servo_record(pose)
     return {
         "status": "ok" if are_met(scene, solutions) else "unreached",
         "scene": scene.document.name,
         "joints": list(scene.chain.names),
-        "goals": [
-            _goal_record(name, solution, stages)
-            for name, solution in zip(scene.goal_names, solutions, strict=True)
-        ],
+        "goals": goals,
     }
 
 
@@ -53,6 +61,7 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "position": solution.goal.tolist(),
         "status": status_label(solution),
         "reached": bool(solution.reached),
+        "remark": solution.remark,
         "distance": float(solution.distance),
         "iterations": int(solution.iterations),
         "angles": np.degrees(solution.angles).tolist(),
@@ -138,3 +147,23 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list):
         return [_finite(inner) for inner in value]
     return value
+
+
+def servo_record(pose: ServoPose) -> dict[str, Any]:
+    """Describe servo commands for machines, angles in degrees."""
+    return {
+        "commands": [
+            {
+                "joint": command.joint,
+                "axis": command.axis,
+                "id": command.id,
+                "angle": float(np.degrees(command.angle)),
+                "tick": command.tick,
+                "achieved": float(np.degrees(command.achieved)),
+            }
+            for command in pose.commands
+        ],
+        "achieved": np.degrees(pose.angles).tolist(),
+        "position": pose.position.tolist(),
+        "distance": pose.distance,
+    }

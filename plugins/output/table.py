@@ -1,6 +1,6 @@
 """Tables for people, by rich: plain text off a terminal, no colours with NO_COLOR."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.plugins.output.listing import range_text
 from limbik.plugins.output.records import status_label
+from limbik.plugins.output.servo import ServoPose
 
 _FIXED_WIDTH = 30  # status, distance, rounds and the gaps between them
 _WIDE = 10_000  # columns off a terminal: a table in a file is never folded
@@ -42,7 +43,7 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     for row, (name, solution) in enumerate(zip(scene.goal_names, solutions, strict=True)):
         table.add_row(
             Text(name),
-            Text(status_label(solution), style="green" if solution.reached else "red"),
+            Text(_status(solution), style="green" if solution.reached else "red"),
             f"{float(solution.distance):.2g}",
             str(solution.iterations),
             *(joints[title][row] for title in shown),
@@ -170,3 +171,44 @@ def new_console() -> Console:
     """A console that writes plain, unfolded lines off a terminal."""
     console = _Console(highlight=False)
     return console if console.is_terminal else _Console(highlight=False, width=_WIDE)
+
+
+def _status(solution: Solution) -> str:
+    """The status, and what the solver has to remark."""
+    return ": ".join(filter(None, (status_label(solution), solution.remark)))
+
+
+def print_comparison(scene: Scene, solutions: Mapping[str, Sequence[Solution]]) -> None:
+    """Print one line a solver and goal, then how many goals each reaches."""
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for title in ("solver", "goal", "status"):
+        table.add_column(title)
+    for title in ("distance", "rounds"):
+        table.add_column(title, justify="right")
+    for solver, found in solutions.items():
+        for name, solution in zip(scene.goal_names, found, strict=True):
+            style = "green" if solution.reached else "red"
+            cells = Text(solver), Text(name), Text(_status(solution), style=style)
+            table.add_row(*cells, f"{float(solution.distance):.2g}", str(solution.iterations))
+    console = new_console()
+    console.print(table)
+    for solver, found in solutions.items():
+        reached = sum(bool(solution.reached) for solution in found)
+        console.print(f"{solver}: {reached} of {len(found)} goals reached")
+
+
+def print_servos(scene: Scene, poses: Sequence[ServoPose]) -> None:
+    """Print one line a goal: each servo's tick, and how far off whole ticks end; or nothing."""
+    if not poses:
+        return
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.add_column("goal")
+    for command in poses[0].commands:
+        table.add_column(f"{command.id} {command.joint} {command.axis}", justify="right")
+    table.add_column("distance", justify="right")
+    for name, pose in zip(scene.goal_names, poses, strict=True):
+        ticks = (str(command.tick) for command in pose.commands)
+        table.add_row(Text(name), *ticks, f"{pose.distance:.2g}")
+    console = new_console()
+    console.print("\nservo ticks")
+    console.print(table)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
+from limbik.core.scene import Scene, require_own_solver
 from limbik.core.solver import Solver
 from limbik.plugins.output.files import write_whole
 from limbik.plugins.paths.joints import JointMotion, degrees_to_limits, joint_motion
@@ -55,6 +55,7 @@ def run_trajectory(
         from limbik.plugins.output.plot import check_plot
 
         check_plot(files.plot)
+    require_own_solver(scene, "limbik trajectory")
     planned = scene_trajectory(scene)
     section = scene.trajectory
     assert section is not None  # scene_trajectory has refused a scene without

@@ -1,0 +1,52 @@
+"""The command `limbik compare`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from limbik.plugins.output.failures import reported
+
+
+def compare(
+    scene: Annotated[str, typer.Argument(help="Scene file (YAML), or - for standard input.")],
+    solvers: Annotated[str, typer.Option(help="Names of solvers, separated by commas.")],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Write one JSON object to stdout.")
+    ] = False,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw them side by side to a .png, .svg or .pdf file.")
+    ] = None,
+) -> None:
+    """Solve a scene with several solvers and show what each makes of it.
+
+    limbik compare planar.yaml --solvers article-ccd,planar-ccd
+
+    limbik compare planar.yaml --solvers article-ccd,article-ccd-limit,planar-ccd --plot p.png
+    """
+    with reported(as_json):
+        from limbik.core.registry import Registry
+        from limbik.core.scene import read_scene
+        from limbik.plugins.output import compare as comparing
+        from limbik.plugins.output.files import write_whole
+        from limbik.plugins.output.records import to_json
+
+        registry = Registry()
+        read = read_scene(scene, registry)
+        if plot is not None:
+            from limbik.plugins.output.plot import check_plot
+
+            check_plot(plot)
+        names = list(dict.fromkeys(filter(None, map(str.strip, solvers.split(",")))))
+        found = comparing.compare(read, names, registry)
+        if plot is not None:
+            form = plot.suffix.lower().lstrip(".")
+            write_whole(plot, comparing.draw_comparison(found, form))
+        if as_json:
+            typer.echo(to_json(comparing.compare_record(found)))
+        else:
+            from limbik.plugins.output.table import print_comparison
+
+            print_comparison(read, found.solutions)
+        if not found.are_reached:
+            raise SystemExit(1)

@@ -1,0 +1,1 @@
+"""Whole solvers: each brings the closed form or the search of one kind of chain."""

@@ -1,0 +1,1 @@
+"""Planar chains of source 001: CCD and FABRIK with and without limits."""
