@@ -26,6 +26,7 @@ from limbik.core.wrappers import TEMPLATES
 # numba annotates a part of itself only, and not the same part in each version.
 _njit: Any = numba.njit
 _types: Any = numba.types
+_typeof: Any = numba.typeof
 _config: Any = numba.config
 _cgutils: Any = numba.core.cgutils
 _intrinsic: Any = numba.extending.intrinsic
@@ -47,6 +48,13 @@ def compiled_entry(entry: Entry) -> Any:
         dispatcher = _cached(copy, cache.folder(cache.fingerprint()))
         fill()
     return dispatcher
+
+
+def direct(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
+    """Return the entrance of a compiled function for arguments of the types of these."""
+    types = tuple(_typeof(argument) for argument in arguments)
+    dispatcher.compile(types)
+    return dispatcher.overloads[types].entry_point
 
 
 def _cached(function: Callable[..., Any], place: Path | None) -> Any:

@@ -42,6 +42,16 @@ class Entry:
             self.compile()
         return self.compiled(*arguments)
 
+    def direct(self, *arguments: Any) -> Callable[..., Any]:
+        """Return the function for arguments of exactly the types of these.
+
+        It skips the look at the types on every call, which takes longer than a short solve. The
+        caller answers for the types: other ones are misread.
+        """
+        from limbik.core import compiler
+
+        return cast(Callable[..., Any], compiler.direct(self.compile(), arguments))
+
     def compile(self) -> Any:
         """Return the function to call, made on first use."""
         if self.compiled is None:

@@ -14,6 +14,7 @@ from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Body, Options, Plugs, flat_body, flat_options
+from limbik.core.jit import Entry
 from limbik.core.pose import forward_kinematics
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
@@ -75,10 +76,18 @@ class Solver:
 
     @cached_property
     def _kernel(self) -> Callable[..., int]:
-        """The compiled solve; numba is imported here and not before."""
+        """The compiled solve; numba is imported here and not before.
+
+        Every call passes arrays of the same types, made or checked here: they are looked at once.
+        """
         from limbik.core.kernels.solve3d import solve_goals
 
-        return solve_goals
+        if not isinstance(solve_goals, Entry):
+            return solve_goals
+        out = _Arrays(1, len(self.chain), 0)
+        return solve_goals.direct(
+            *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
+        )
 
     def solve(
         self,
@@ -194,7 +203,12 @@ class Solver:
         return self._many(points, out, Continuity(memory))
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: "_Arrays") -> int:
-        return self._kernel(
+        return self._kernel(*self._arguments(goals, fk, memory, chained, out))
+
+    def _arguments(
+        self, goals: Array, fk: Array, memory: Array, chained: bool, out: "_Arrays"
+    ) -> tuple[Any, ...]:
+        return (
             self._body,
             self._options,
             self._plugs,
@@ -221,7 +235,9 @@ class Solver:
 
     def _goals(self, goals: Array) -> Array:
         """Return goals as the solve gets them: pulled into reach when the settings say so."""
-        return pull_into_reach(self.chain, goals) if self.settings.reach_limit else goals
+        if not self.settings.reach_limit:
+            return goals
+        return np.array(pull_into_reach(self.chain, goals), order="C")
 
     def _memory(self, continuity: Continuity | None) -> Array:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
@@ -301,7 +317,8 @@ def _address(bound: Bound) -> int:
 def _checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
     """Return values as a contiguous float64 array, or say what is wrong with them."""
     try:
-        array = np.ascontiguousarray(values, np.float64)
+        # A copy, always: compiled code is entered with writable, contiguous arrays only.
+        array = np.array(values, np.float64, order="C")
     except (TypeError, ValueError):
         raise InputError(f"{what}: expected numbers of shape {_shown(shape)}") from None
     expects_rows = shape[0] is None

@@ -137,7 +137,13 @@ def _turn_limited(
         before = nearest_form(matrix_to_hpb(relative, before[2]), before)
     low, high = vector(pose.low, joint), vector(pose.high, joint)
     full = matrix_to_hpb(multiply(turn_about(axis, angle), relative), before[2])
-    wanted = _least_clamped_form(nearest_form(full, before), before, low, high)
+    if low[1] >= -0.5 * pi and high[1] <= 0.5 * pi:
+        # The form with |pitch| ≤ 90° is the only one that such limits can leave uncut.
+        wanted = _wrap_limited(near(full, before), low, high)
+        if _cut(wanted, low, high) > ZERO_TURN:
+            wanted = _least_clamped_form(nearest_form(full, before), before, low, high)
+    else:
+        wanted = _least_clamped_form(nearest_form(full, before), before, low, high)
     if locked:
         wanted = (wanted[0], wanted[1], before[2])
         low, high = (low[0], low[1], before[2]), (high[0], high[1], before[2])
