@@ -12,6 +12,8 @@ options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, key
 fk: {elbow: [0, 15, 0]}        # optional FK offsets
 follow: false                  # optional: solve the goals as a path
 judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
+solver: 3d                     # optional: 2d bends in the plane of base, goal and pole ...
+pole: {position: [0, 9, 9]}    # ... which 2d needs; see `limbik.core.scenemodel.PoleModel`
 goals:                         # a list, or {csv: goals.csv}
   - {name: mouth, position: [1, 2, 3]}
 ```
@@ -37,9 +39,11 @@ from limbik.core.chain import MAX_JOINTS, Chain, Joint
 from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
 from limbik.core.formats import Body
 from limbik.core.goals import read_goals
+from limbik.core.pole import Pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
+from limbik.core.sceneplane import solver_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS
 from limbik.core.trajectorymodel import TrajectoryModel
@@ -67,6 +71,9 @@ class Scene:
         judge: Rate and thresholds for judging the motion; None where the scene has none.
         trajectory: Key points and moves, if the scene has any.
         body: Where the chain came from, if from another file.
+        pole: The pole of the 2D solver; None for the 3D solver.
+        bind: Whether the 2D solver is bound to the rest pose.
+        goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaN for goals without.
     """
 
     name: str
@@ -80,6 +87,9 @@ class Scene:
     judge: JudgeModel | None = None
     trajectory: TrajectoryModel | None = None
     body: Body | None = None
+    pole: Pole | None = None
+    bind: bool = False
+    goal_turns: Array | None = None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -87,7 +97,11 @@ class Scene:
         if self.body is None:
             return ()
         across = np.linalg.norm(self.chain.offsets[1:, :2], axis=1)
-        if self.settings.off_axis or (across <= 1e-6 * self.chain.length).all():
+        if (
+            self.pole is not None
+            or self.settings.off_axis
+            or (across <= 1e-6 * self.chain.length).all()
+        ):
             return self.body.notes
         note = "some bones lie off their joints' Z axes: set off_axis: true in the options"
         return (*self.body.notes, note)
@@ -135,7 +149,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     body = source.body
     joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
     faults += _name_faults(joints, model, document)
-    faults += _settings_faults(len(joints), model.options, document)
+    faults += _settings_faults(len(joints), model, document)
     chain = body.chain if body else None
     try:
         chain = chain or _chain(model)
@@ -149,6 +163,9 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
     offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
+    pole = None
+    if model.pole is not None:
+        pole = Pole(position=model.pole.position, rotor=model.pole.rotor)
     return Scene(
         title,
         chain,
@@ -161,7 +178,17 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         model.judge,
         model.trajectory,
         body,
+        pole,
+        model.pole is not None and model.pole.bind,
+        _turns(model),
     )
+
+
+def _turns(model: SceneModel) -> Array | None:
+    """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
+    if isinstance(model.goals, CsvModel) or not any(goal.rotation for goal in model.goals):
+        return None
+    return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
 
 
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:
@@ -233,12 +260,15 @@ def _twice(
         first.setdefault(name, index)
 
 
-def _settings_faults(count: int, options: Settings, document: Document) -> Iterator[Fault]:
+def _settings_faults(count: int, model: SceneModel, document: Document) -> Iterator[Fault]:
     """Check the options that only make sense together with a chain of so many joints."""
+    yield from solver_faults(model, document)
+    options = model.options
     if count < 2:
         return
-    if options.bend_reference >= count:
-        message = f"must be 1 to {count - 1} in a chain of {count} joints"
+    least = 0 if model.solver == "2d" else 1
+    if not least <= options.bend_reference < count:
+        message = f"must be {least} to {count - 1} in a chain of {count} joints"
         found = f"{message}, not {options.bend_reference}"
         yield document.fault("range", found, ("options", "bend_reference"))
     held = options.held.base + options.held.end
@@ -262,6 +292,7 @@ def _joint(joint: JointModel) -> Joint:
         joint.heading,
         joint.pitch,
         joint.bank,
+        joint.planar,
     )
 
 

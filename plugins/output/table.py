@@ -14,7 +14,7 @@ from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.plugins.output.listing import range_text
-from limbik.plugins.output.records import status_label
+from limbik.plugins.output.records import outcome
 
 _FIXED_WIDTH = 30  # status, distance, rounds and the gaps between them
 _WIDE = 10_000  # columns off a terminal: a table in a file is never folded
@@ -42,7 +42,7 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     for row, (name, solution) in enumerate(zip(scene.goal_names, solutions, strict=True)):
         table.add_row(
             Text(name),
-            Text(status_label(solution), style="green" if solution.reached else "red"),
+            Text(outcome(solution), style="green" if solution.reached else "red"),
             f"{float(solution.distance):.2g}",
             str(solution.iterations),
             *(joints[title][row] for title in shown),

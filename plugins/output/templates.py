@@ -4,7 +4,7 @@ from pathlib import Path
 
 from limbik.core.errors import Fault, InputError
 
-TEMPLATES = ("arm", "arm7", "humanoid", "leg", "spine", "weld")
+TEMPLATES = ("arm", "arm7", "finger", "humanoid", "leg", "leg-pole", "spine", "weld")
 _WITH_FILES = {"arm7": "arm7.urdf", "humanoid": "humanoid.urdf"}  # what a scene is read with
 SCHEMA_FILE = "limbik.schema.json"
 
