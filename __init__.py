@@ -13,12 +13,15 @@ if TYPE_CHECKING:
     from limbik.core.match import convert_bend_vector as convert_bend_vector
     from limbik.core.match import match_fk as match_fk
     from limbik.core.match import match_ik as match_ik
+    from limbik.core.pole import Pole as Pole
+    from limbik.core.pole import PoleRotor as PoleRotor
     from limbik.core.registry import Registry as Registry
     from limbik.core.settings import Settings as Settings
     from limbik.core.solution import Continuity as Continuity
     from limbik.core.solution import Solution as Solution
     from limbik.core.solution import Status as Status
     from limbik.core.solver import Solver as Solver
+    from limbik.core.solver2d import Solver2D as Solver2D
     from limbik.core.strategy import Strategy as Strategy
 
 __version__ = "0.1.0"
@@ -30,12 +33,15 @@ _PUBLIC = {
     "Continuity": "limbik.core.solution",
     "Controller": "limbik.core.controller",
     "Joint": "limbik.core.chain",
+    "Pole": "limbik.core.pole",
+    "PoleRotor": "limbik.core.pole",
     "LimbikError": "limbik.core.errors",
     "Match": "limbik.core.match",
     "Registry": "limbik.core.registry",
     "Settings": "limbik.core.settings",
     "Solution": "limbik.core.solution",
     "Solver": "limbik.core.solver",
+    "Solver2D": "limbik.core.solver2d",
     "Status": "limbik.core.solution",
     "Strategy": "limbik.core.strategy",
     "convert_bend_vector": "limbik.core.match",

@@ -10,10 +10,10 @@ from limbik.core.formats import Bake
 from limbik.core.mirror import mirrored_solution
 from limbik.core.motion import motion_metrics
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array
 from limbik.core.scene import Scene
-from limbik.core.solution import Continuity, Solution
-from limbik.core.solver import Solver
+from limbik.core.solution import Solution
+from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
+from limbik.core.solving import scene_solver, solve_part
 from limbik.core.whole import prepare
 
 BLOCK: Final = 500  # goals solved between two reports of progress
@@ -67,26 +67,23 @@ def _blocks(
     scene: Scene, registry: Registry | None, progress: Callable[[int], None] | None
 ) -> list[Solution]:
     """Solve the goals block by block with limbik's own solver."""
-    solver = Solver(scene.chain, scene.settings, registry)
+    solver = scene_solver(scene, registry)
     parts: list[Solution] = []
     for start in range(0, len(scene.goals), BLOCK):
-        goals = scene.goals[start : start + BLOCK]
+        part = slice(start, start + BLOCK)
         before = parts[-1].continuity if parts else None
-        parts.append(_solved(solver, scene, goals, before))
+        parts.append(solve_part(solver, scene, part, before))
         if progress is not None:
-            progress(start + len(goals))
+            progress(start + len(scene.goals[part]))
     return parts
-
-
-def _solved(solver: Solver, scene: Scene, goals: Array, before: Continuity | None) -> Solution:
-    if scene.follow:
-        return solver.follow(goals, fk_offsets=scene.fk_offsets, continuity=before)
-    return solver.solve_many(goals, fk_offsets=scene.fk_offsets)
 
 
 def _joined(parts: Sequence[Solution]) -> Solution:
     """Put solutions with leading goal axes behind each other."""
+    names = [*_ARRAYS, *(PLANAR_ARRAYS if isinstance(parts[-1], PlanarSolution) else ())]
     joined: dict[str, Any] = {
-        name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in names
+        if getattr(parts[-1], name) is not None
     }
     return replace(parts[-1], **joined)

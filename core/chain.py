@@ -33,6 +33,9 @@ class Joint:
         heading: Range (low, high) [rad], or None where free. Equal ends fix the axis.
         pitch: As heading.
         bank: As heading.
+        planar: Range of the planar joint's angle in the 2D solver (D-06), from the bone before it
+            (the base's: from the line base to goal), positive toward the pole. None takes the
+            pitch range instead (2D 42); (-π, π) is free.
     """
 
     name: str
@@ -42,6 +45,7 @@ class Joint:
     heading: Limit | None = None
     pitch: Limit | None = None
     bank: Limit | None = None
+    planar: Limit | None = None
 
     @classmethod
     def degrees(
@@ -53,6 +57,7 @@ class Joint:
         heading: Limit | None = None,
         pitch: Limit | None = None,
         bank: Limit | None = None,
+        planar: Limit | None = None,
     ) -> "Joint":
         """Build a joint from angles in degrees; the arguments are those of the class."""
 
@@ -67,6 +72,7 @@ class Joint:
             limit(heading),
             limit(pitch),
             limit(bank),
+            limit(planar),
         )
 
     @property
@@ -225,7 +231,7 @@ def _check_joint(joint: Joint) -> None:
         raise ChainError("every joint needs a name")
     for what in ("offset", "frozen", "rest"):
         _check_vector(getattr(joint, what), what, joint.name)
-    for axis, limit in zip(AXES, joint.limits, strict=True):
+    for axis, limit in zip((*AXES, "planar"), (*joint.limits, joint.planar), strict=True):
         if limit is not None:
             _check_limit(joint.name, axis, limit)
 

@@ -23,7 +23,7 @@ SLOT_ORDER: Final = (
 )
 """The slots in the order of `Plugs`."""
 
-_AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
+AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
     "y+": (0.0, 1.0),
     "y-": (0.0, -1.0),
 }
@@ -86,7 +86,7 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         name = chain.names[settings.bend_reference - 1]
         raise ChainError("the chain has no length from the bend root to the end", name)
     cone, held = settings.forbidden_cone, settings.held
-    axis_x, axis_y = _AXES[settings.reference_axis]
+    axis_x, axis_y = AXES[settings.reference_axis]
     return Options(
         full_fk=not settings.ik,
         tolerance=settings.tolerance,

@@ -15,6 +15,7 @@ import numpy as np
 from limbik.core.chain import Chain
 from limbik.core.frames import Y_UP, mirror_hpb
 from limbik.core.solution import Solution
+from limbik.core.solution2d import PlanarSolution
 
 _WORDS: Final = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 _LETTERS: Final = (("L", "R"), ("l", "r"))
@@ -30,7 +31,7 @@ def mirrored_solution(solution: Solution) -> Solution:
     names = side_swapped(chain.names)
     joints = [replace(joint, name=name) for joint, name in zip(chain.joints, names, strict=True)]
     bend_angle = -np.asarray(solution.bend_angle)
-    return replace(
+    mirrored = replace(
         solution,
         chain=Chain(joints, chain.base_position, chain.base_turn),
         goal=Y_UP.points(solution.goal),
@@ -41,6 +42,20 @@ def mirrored_solution(solution: Solution) -> Solution:
         bend_angle=bend_angle if bend_angle.ndim else float(bend_angle),
         continuity=None,
         trace=None,
+    )
+    return _mirrored_plane(mirrored) if isinstance(mirrored, PlanarSolution) else mirrored
+
+
+def _mirrored_plane(solution: PlanarSolution) -> PlanarSolution:
+    """Mirror what only the 2D solver gives; planar angles count toward the pole and stay."""
+    line, bend = (Y_UP.points(solution.plane[..., axis]) for axis in (0, 1))
+    rotor, goal = solution.rotor, solution.goal_rotation
+    return replace(
+        solution,
+        plane=np.stack([line, bend, np.cross(line, bend)], -1),
+        pole=Y_UP.points(solution.pole),
+        rotor=None if rotor is None else Y_UP.rotations(rotor),
+        goal_rotation=None if goal is None else Y_UP.rotations(goal),
     )
 
 

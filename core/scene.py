@@ -13,6 +13,8 @@ options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, key
 fk: {elbow: [0, 15, 0]}        # optional FK offsets
 follow: false                  # optional: solve the goals as a path
 judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
+solver: 3d                     # optional: 2d bends in the plane of base, goal and pole ...
+pole: {position: [0, 9, 9]}    # ... which 2d needs; see `limbik.core.scenemodel.PoleModel`
 goals:                         # a list, or {csv: goals.csv}
   - {name: mouth, position: [1, 2, 3]}
 ```
@@ -39,14 +41,16 @@ from limbik.core.chain import MAX_JOINTS, Chain, Joint
 from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
 from limbik.core.formats import Body
 from limbik.core.goals import read_goals
+from limbik.core.pole import Pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
+from limbik.core.sceneplane import solver_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
-from limbik.core.whole import BUILT_IN_3D, prepare
+from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
@@ -71,6 +75,9 @@ class Scene:
         trajectory: Key points and moves, if the scene has any.
         body: Where the chain came from, if from another file.
         solver: The whole solver chosen; None for limbik's own in 3D.
+        pole: The pole of the 2D solver; None for the 3D solver.
+        bind: Whether the 2D solver is bound to the rest pose.
+        goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaN for goals without.
     """
 
     name: str
@@ -85,6 +92,9 @@ class Scene:
     trajectory: TrajectoryModel | None = None
     body: Body | None = None
     solver: Bound | None = None
+    pole: Pole | None = None
+    bind: bool = False
+    goal_turns: Array | None = None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -92,7 +102,11 @@ class Scene:
         if self.body is None:
             return ()
         across = np.linalg.norm(self.chain.offsets[1:, :2], axis=1)
-        if self.settings.off_axis or (across <= 1e-6 * self.chain.length).all():
+        if (
+            self.pole is not None
+            or self.settings.off_axis
+            or (across <= 1e-6 * self.chain.length).all()
+        ):
             return self.body.notes
         note = "some bones lie off their joints' Z axes: set off_axis: true in the options"
         return (*self.body.notes, note)
@@ -140,7 +154,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     body = source.body
     joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
     faults += _name_faults(joints, model, document)
-    faults += _settings_faults(len(joints), model.options, document)
+    faults += _settings_faults(len(joints), model, document)
     chain, solver = body.chain if body else None, None
     try:
         chain = chain or _chain(model)
@@ -155,6 +169,9 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
     offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
+    pole = None
+    if model.pole is not None:
+        pole = Pole(position=model.pole.position, rotor=model.pole.rotor)
     return Scene(
         title,
         chain,
@@ -168,6 +185,9 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         model.trajectory,
         body,
         solver,
+        pole,
+        model.pole is not None and model.pole.bind,
+        _turns(model),
     )
 
 
@@ -182,10 +202,17 @@ def require_own_solver(scene: Scene, what: str) -> None:
         raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
 
 
+def _turns(model: SceneModel) -> Array | None:
+    """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
+    if isinstance(model.goals, CsvModel) or not any(goal.rotation for goal in model.goals):
+        return None
+    return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
+
+
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:
     """Give the slots a scene chooses a strategy for, unchecked."""
     options = content.get("options") if isinstance(content, dict) else None
-    if isinstance(content, dict) and content.get(SOLVER.name, BUILT_IN_3D) != BUILT_IN_3D:
+    if isinstance(content, dict) and content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
         yield SOLVER.name, content[SOLVER.name]
     if isinstance(options, dict):
         yield from ((slot, options[slot]) for slot in SLOTS if slot in options)
@@ -220,9 +247,10 @@ def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[
                 place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
                 path = (*place, *_key_path(key))
                 at_key = fault.code == "unknown-key"
-                yield document.fault(
-                    fault.code, fault.message, path, hint=fault.hint, at_key=at_key
-                )
+                message = fault.message
+                if slot == SOLVER.name:
+                    message = message.replace("known: ", f"known: {', '.join(OWN_SOLVERS)}, ")
+                yield document.fault(fault.code, message, path, hint=fault.hint, at_key=at_key)
 
 
 def _key_path(key: str) -> KeyPath:
@@ -256,12 +284,15 @@ def _twice(
         first.setdefault(name, index)
 
 
-def _settings_faults(count: int, options: Settings, document: Document) -> Iterator[Fault]:
+def _settings_faults(count: int, model: SceneModel, document: Document) -> Iterator[Fault]:
     """Check the options that only make sense together with a chain of so many joints."""
+    yield from solver_faults(model, document)
+    options = model.options
     if count < 2:
         return
-    if options.bend_reference >= count:
-        message = f"must be 1 to {count - 1} in a chain of {count} joints"
+    least = 0 if model.solver == "2d" else 1
+    if not least <= options.bend_reference < count:
+        message = f"must be {least} to {count - 1} in a chain of {count} joints"
         found = f"{message}, not {options.bend_reference}"
         yield document.fault("range", found, ("options", "bend_reference"))
     held = options.held.base + options.held.end
@@ -278,7 +309,7 @@ def _chain(model: SceneModel) -> Chain:
 
 def _solver(model: SceneModel, chain: Chain, registry: Registry | None) -> Bound | None:
     """Bind the scene's solver; it refuses chains it does not solve."""
-    if model.solver == BUILT_IN_3D:
+    if model.solver in OWN_SOLVERS:
         return None
     bound = (registry or Registry()).bind(SOLVER.name, model.solver)
     prepare(bound, chain, model.options)
@@ -294,6 +325,7 @@ def _joint(joint: JointModel) -> Joint:
         joint.heading,
         joint.pitch,
         joint.bank,
+        joint.planar,
     )
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from limbik.core.pole import PoleRotor, Preset
 from limbik.core.settings import Model, Settings
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.wording import found_words
@@ -95,6 +96,13 @@ class JointModel(Model):
     heading: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
     pitch: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
     bank: Annotated[Range | None, Field(description="range [deg]; absent = free")] = None
+    planar: Annotated[
+        Range | None,
+        Field(
+            description="range in the 2D solver, from the bone before, positive toward the pole "
+            "[deg]; absent = the pitch range, [-180, 180] = free"
+        ),
+    ] = None
 
 
 class ChainModel(Model):
@@ -109,6 +117,29 @@ class GoalModel(Model):
 
     name: Annotated[Name | None, Field(description="absent = its number, from 1")] = None
     position: Annotated[Place, Field(description="in the world [length]")]
+    rotation: Annotated[
+        Turn | None,
+        Field(description="in the world, HPB [deg]; turns the pole rotor of the 2D solver"),
+    ] = None
+
+
+def _rotor_form(value: Any) -> str:
+    return "preset" if isinstance(value, str) else "rotor"
+
+
+class PoleModel(Model):
+    """Where the chain of the 2D solver bends to."""
+
+    position: Annotated[Place, Field(description="world [length]; with a rotor, where it rests")]
+    rotor: Annotated[
+        Annotated[
+            Annotated[Preset, Tag("preset")] | Annotated[PoleRotor, Tag("rotor")],
+            Discriminator(_rotor_form),
+        ]
+        | None,
+        Field(description="what turns the pole: arm, leg or a mapping; absent = nothing"),
+    ] = None
+    bind: Annotated[bool, Field(description="leave the rest pose where it is")] = False
 
 
 class CsvModel(Model):
@@ -149,6 +180,7 @@ class SceneModel(Model):
     solver: Annotated[
         Any, AfterValidator(_chosen), Field(description="name of the solver, or {use: name, ...}")
     ] = "3d"
+    pole: Annotated[PoleModel | None, Field(description="of the 2D solver")] = None
     options: Settings = Settings()
     fk: Annotated[
         dict[str, Turn],

@@ -9,7 +9,7 @@ from limbik.core.registry import Registry
 from limbik.core.scenemodel import SceneModel
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.strategy import Parameter, Strategy, layout
-from limbik.core.whole import BUILT_IN_3D
+from limbik.core.whole import OWN_SOLVERS
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _WORDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
@@ -31,7 +31,7 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
         options[slot] |= _choice(slot, [found[name].strategy for name in found])
     solvers = registry.strategies(SOLVER.name).values()
     choice = _choice(SOLVER.name, [found.strategy for found in solvers])
-    choice["anyOf"].insert(0, {"const": BUILT_IN_3D})
+    choice["anyOf"][:0] = [{"const": name} for name in OWN_SOLVERS]
     schema["properties"][SOLVER.name] |= choice
     inputs = list(registry.scene_inputs().values())
     chains = [schema["properties"]["chain"]]

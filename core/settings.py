@@ -3,7 +3,8 @@
 Angles are in degrees, lengths in the chain's unit. The defaults are the document's (C-17).
 """
 
-from typing import Annotated, Any, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
@@ -57,7 +58,8 @@ class Settings(Model):
     ik: Annotated[bool, Field(description="false: full FK, no solve (000 §6.1(1))")] = True
     tolerance: Annotated[float, Field(gt=0.0, description="distance that counts as reached")] = 0.01
     max_iterations: Annotated[
-        int, Field(ge=-2, le=100_000, description="-2 initial, -1 aim, 0 bend pose, N CCD rounds")
+        int,
+        Field(ge=-2, le=100_000, description="-2 initial (3D), -1 aim, 0 bend pose, N CCD rounds"),
     ] = 20
     smoothing: Annotated[
         float, Field(ge=0.1, le=1.0, description="CCD round k has strength min(k x this, 1)")
@@ -87,7 +89,9 @@ class Settings(Model):
         BeforeValidator(_pair),
         Field(description="bend weight base (min, max) [-]"),
     ] = (0.0, 0.0)
-    bend_reference: Annotated[int, Field(ge=1, description="index of the bend reference joint")] = 1
+    bend_reference: Annotated[
+        int, Field(ge=0, description="index of the bend reference joint; 0 in 2D only")
+    ] = 1
     reference_axis: Annotated[
         Literal["free", "x+", "x-", "y+", "y-"],
         Field(description="axis of the reference joint turned to the bend vector"),
@@ -139,3 +143,34 @@ class Settings(Model):
                 "hold_bend_vector goes with the modes manual and global, not with auto"
             )
         return self
+
+
+ONLY_3D: Final = (
+    "bend_vector",
+    "root_control",
+    "bank_suppression",
+    "aim_twist",
+    "off_axis",
+    "aim_from",
+    "bank_lock",
+    "forbidden_cone",
+    "hold_bend_vector",
+    "bend_smoothing",
+    "clamp",
+    "start",
+    "soft_zone",
+)
+"""Settings the 2D solver has no use for; giving one is an error."""
+
+
+def misfits_in_2d(settings: Settings) -> Iterator[tuple[str, str, str]]:
+    """Give name, code and message of each setting that is given and that the 2D solver has not."""
+    for name in ONLY_3D:
+        if name in settings.model_fields_set:
+            pole = "; the pole gives the bend in 2D" if name == "bend_vector" else ""
+            yield name, "solver", f"belongs to the 3D solver{pole}"
+    if settings.finish != "newton" and settings.finish != "none":
+        yield "finish", "solver", "belongs to the 3D solver; in 2D it can only be none"
+    if settings.max_iterations == -2:
+        message = "must be -1 or more in 2D, not -2: the initial pose is a stage of the 3D solver"
+        yield "max_iterations", "range", message

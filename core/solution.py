@@ -1,7 +1,8 @@
 """What a solve gives back: `Solution`, `Status`, `Trace` stages, `Continuity`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -168,8 +169,27 @@ class Solution:
 
     @property
     def remark(self) -> str:
-        """What a reader should know beside the status; empty for limbik's own solvers."""
+        """What a reader should know beside the status; empty for the 3D solver."""
         return ""
+
+    def single(self, row: int) -> "Solution":
+        """Return the solution of one goal out of many."""
+        return type(self)(**self._row(row))
+
+    def _row(self, row: int) -> dict[str, Any]:
+        """Return the fields of one goal's solution."""
+        picked: dict[str, Any] = {
+            f.name: None if (value := getattr(self, f.name)) is None else value[row]
+            for f in fields(self)
+            if f.name not in ("chain", "continuity", "trace", "planar_limits")
+        }
+        return picked | {
+            "chain": self.chain,
+            "iterations": int(picked["iterations"]),
+            "distance": float(picked["distance"]),
+            "bend_angle": float(picked["bend_angle"]),
+            "status": Status(int(picked["status"])),
+        }
 
     def limits_touched(self) -> tuple[str, ...]:
         """Return the joint axes that rest on an end of their range, like `elbow pitch`.

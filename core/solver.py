@@ -5,26 +5,26 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import ChainError, InputError, PluginError
-from limbik.core.flatten import SLOT_ORDER, Body, Options, Plugs, flat_body, flat_options
+from limbik.core.errors import InputError, PluginError
+from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_options
 from limbik.core.jit import Entry
 from limbik.core.pose import forward_kinematics
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
-from limbik.core.slots import PASSED_OVER
+from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
+from limbik.core.solveinput import Arrays, check_joints, checked
 
 FAILED = 10  # status numbers from here on name the slot whose strategy failed
-LARGEST = 1e100  # squares of larger numbers overflow
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
 
 
@@ -43,6 +43,9 @@ class Solver:
         pydantic.ValidationError: An option is out of its range.
     """
 
+    _slots: ClassVar[tuple[str, ...]] = SLOT_ORDER
+    _early_stages: ClassVar[tuple[str, ...]] = ("initial", "aim", "bend")
+
     def __init__(
         self,
         chain: Chain,
@@ -53,25 +56,42 @@ class Solver:
         given = Settings() if settings is None else settings
         if options:
             given = Settings(**{**given.model_dump(exclude_unset=True), **options})
-        _check_fit(chain, given)
+        self._check_fit(chain, given)
         self.chain = chain
         self.settings = given
         self.registry = Registry() if registry is None else registry
         self.strategies: dict[str, Bound] = {
-            slot: self.registry.bind(slot, getattr(given, slot)) for slot in SLOT_ORDER
+            slot: self.registry.bind(slot, getattr(given, slot)) for slot in self._slots
         }
-        self._body: Body = flat_body(chain, given)
-        self._options: Options = flat_options(chain, given)
+        self._fixed: tuple[Any, ...] = self._flatten()
         self._none = np.zeros((len(chain), 3))
         self._fresh = np.zeros((len(chain) + 4, 3))
+
+    def altered(self, **options: Any) -> "Solver":
+        """Return a solver of the same kind with some settings changed."""
+        return Solver(self.chain, self._altered(options), self.registry)
+
+    def _altered(self, options: dict[str, Any]) -> Settings:
+        return Settings(**{**self.settings.model_dump(exclude_unset=True), **options})
+
+    @staticmethod
+    def _check_fit(chain: Chain, settings: Settings) -> None:
+        """Refuse settings that name joints the chain does not have."""
+        check_joints(chain, settings, 1)
+
+    def _flatten(self) -> tuple[Any, ...]:
+        """Return what the kernel gets before the strategies."""
+        return flat_body(self.chain, self.settings), flat_options(self.chain, self.settings)
 
     @cached_property
     def _plugs(self) -> Plugs:
         """Addresses and parameters of the strategies; compiles them on first use."""
-        chosen = self.strategies
+        chosen, unused = self.strategies, np.zeros(MAX_PARAMS)
         return Plugs(
-            **{slot: _address(chosen[slot]) for slot in SLOT_ORDER},
-            params=np.array([chosen[slot].values for slot in SLOT_ORDER]),
+            **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
+            params=np.array(
+                [chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]
+            ),
         )
 
     @cached_property
@@ -84,7 +104,7 @@ class Solver:
 
         if not isinstance(solve_goals, Entry):
             return solve_goals
-        out = _Arrays(1, len(self.chain), 0)
+        out = Arrays(1, len(self.chain), 0, self._columns)
         return solve_goals.direct(
             *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
@@ -112,29 +132,8 @@ class Solver:
             InputError: Goal, offsets or continuity are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        goals = self._goals(_checked(goal, (3,), "goal").reshape(1, 3))
-        memory = self._memory(continuity)
-        n = len(self.chain)
-        stages = 4 + max(self.settings.max_iterations, 0) if trace else 0
-        out = _Arrays(1, n, stages)
-        count = self._run(goals, self._offsets(fk_offsets), memory, False, out)
-        numbers = out.numbers[0].tolist()
-        if numbers[2] >= FAILED:
-            raise self._blame(int(numbers[2]), goals[0])
-        return Solution(
-            self.chain,
-            goals[0],
-            out.angles[0],
-            out.positions[0],
-            out.rotations[0],
-            int(numbers[0]),
-            numbers[1],
-            _STATUS[int(numbers[2])],
-            out.numbers[0, 3:6],
-            numbers[6],
-            Continuity(memory),
-            self._stages(out.trace[:count], int(numbers[0])) if trace else None,
-        )
+        rows = checked(goal, (3,), "goal").reshape(1, 3)
+        return self._solve_row(self._goals(rows), fk_offsets, continuity, trace)
 
     def solve_many(
         self,
@@ -157,23 +156,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        points = self._goals(_checked(goals, (None, 3), "goals"))
-        fk = self._offsets(fk_offsets)
-        out = _Arrays(len(points), len(self.chain), 0)
-        workers = min(threads or os.cpu_count() or 1, max(len(points) // THREAD_SHARE, 1))
-        bounds = np.linspace(0, len(points), workers + 1).astype(int).tolist()
-        parts = [slice(a, b) for a, b in pairwise(bounds)]
-
-        def run(part: slice) -> None:
-            self._run(points[part], fk, self._fresh.copy(), False, out.part(part))
-
-        if workers == 1:
-            run(parts[0])
-        else:
-            self._plugs, self._kernel  # noqa: B018 - compile once, before the threads start
-            with ThreadPoolExecutor(workers) as pool:
-                list(pool.map(run, parts))
-        return self._many(points, out, None)
+        rows = checked(goals, (None, 3), "goals")
+        return self._solve_rows(self._goals(rows), fk_offsets, threads)
 
     def follow(
         self,
@@ -196,21 +180,89 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        points = self._goals(_checked(goals, (None, 3), "goals"))
-        memory = self._memory(continuity)
-        out = _Arrays(len(points), len(self.chain), 0)
-        self._run(points, self._offsets(fk_offsets), memory, True, out)
-        return self._many(points, out, Continuity(memory))
+        rows = checked(goals, (None, 3), "goals")
+        return self._follow_rows(self._goals(rows), fk_offsets, continuity)
 
-    def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: "_Arrays") -> int:
+    def _solve_row(
+        self,
+        rows: Array,
+        fk_offsets: ArrayLike | None,
+        continuity: Continuity | None,
+        trace: bool,
+    ) -> Solution:
+        """Solve one row, (1, k): the goal, then what else the kernel takes for each."""
+        memory = self._memory(continuity)
+        # The early stages, the rounds and the finish.
+        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + 1
+        out = Arrays(1, len(self.chain), stages if trace else 0, self._columns)
+        count = self._run(rows, self._offsets(fk_offsets), memory, False, out)
+        numbers = out.numbers[0].tolist()
+        if numbers[2] >= FAILED:
+            raise self._blame(int(numbers[2]), rows[0, :3])
+        return self._solution(
+            out.numbers[0],
+            rows[0],
+            chain=self.chain,
+            goal=rows[0, :3],
+            angles=out.angles[0],
+            positions=out.positions[0],
+            rotations=out.rotations[0],
+            iterations=int(numbers[0]),
+            distance=numbers[1],
+            status=_STATUS[int(numbers[2])],
+            bend_vector=out.numbers[0, 3:6],
+            bend_angle=numbers[6],
+            continuity=Continuity(memory),
+            trace=self._stages(out.trace[:count], int(numbers[0])) if trace else None,
+        )
+
+    def _solve_rows(
+        self, rows: Array, fk_offsets: ArrayLike | None, threads: int | None
+    ) -> Solution:
+        """Solve rows, (m, k), that have nothing to do with each other."""
+        fk = self._offsets(fk_offsets)
+        out = Arrays(len(rows), len(self.chain), 0, self._columns)
+        workers = min(threads or os.cpu_count() or 1, max(len(rows) // THREAD_SHARE, 1))
+        bounds = np.linspace(0, len(rows), workers + 1).astype(int).tolist()
+        parts = [slice(a, b) for a, b in pairwise(bounds)]
+
+        def run(part: slice) -> None:
+            self._run(rows[part], fk, self._fresh.copy(), False, out.part(part))
+
+        if workers == 1:
+            run(parts[0])
+        else:
+            self._plugs, self._kernel  # noqa: B018 - compile once, before the threads start
+            with ThreadPoolExecutor(workers) as pool:
+                list(pool.map(run, parts))
+        return self._many(rows, out, None)
+
+    def _follow_rows(
+        self, rows: Array, fk_offsets: ArrayLike | None, continuity: Continuity | None
+    ) -> Solution:
+        """Solve rows, (m, k), in order."""
+        memory = self._memory(continuity)
+        out = Arrays(len(rows), len(self.chain), 0, self._columns)
+        self._run(rows, self._offsets(fk_offsets), memory, True, out)
+        return self._many(rows, out, Continuity(memory))
+
+    @property
+    def _columns(self) -> int:
+        """How many numbers the kernel gives for each goal."""
+        return 7
+
+    def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
+        """Make the solution of one goal or many; numbers and rows have more to read."""
+        return Solution(**fields)
+
+    def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))
 
     def _arguments(
-        self, goals: Array, fk: Array, memory: Array, chained: bool, out: "_Arrays"
+        self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays
     ) -> tuple[Any, ...]:
         return (
-            self._body,
-            self._options,
+            *self._fixed,
             self._plugs,
             goals,
             fk,
@@ -256,29 +308,31 @@ class Solver:
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:
             return self._none
-        return _checked(fk_offsets, (len(self.chain), 3), "FK offsets")
+        return checked(fk_offsets, (len(self.chain), 3), "FK offsets")
 
-    def _many(self, goals: Array, out: "_Arrays", continuity: Continuity | None) -> Solution:
+    def _many(self, rows: Array, out: Arrays, continuity: Continuity | None) -> Solution:
         status = out.numbers[:, 2].astype(np.int64)
         if (status >= FAILED).any():
-            raise self._blame(int(status.max()), goals[status.argmax()])
-        return Solution(
-            self.chain,
-            goals,
-            out.angles,
-            out.positions,
-            out.rotations,
-            out.numbers[:, 0].astype(np.int64),
-            out.numbers[:, 1],
-            status,
-            out.numbers[:, 3:6],
-            out.numbers[:, 6],
-            continuity,
+            raise self._blame(int(status.max()), rows[status.argmax(), :3])
+        return self._solution(
+            out.numbers,
+            rows,
+            chain=self.chain,
+            goal=rows[:, :3],
+            angles=out.angles,
+            positions=out.positions,
+            rotations=out.rotations,
+            iterations=out.numbers[:, 0].astype(np.int64),
+            distance=out.numbers[:, 1],
+            status=status,
+            bend_vector=out.numbers[:, 3:6],
+            bend_angle=out.numbers[:, 6],
+            continuity=continuity,
         )
 
     def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
         rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
-        names = ["initial", "aim", "bend", *rounds, "finish"]
+        names = [*self._early_stages, *rounds, "finish"]
         positions, _ = forward_kinematics(self.chain, angles)
         return tuple(
             Stage(name, pose, places)
@@ -289,61 +343,6 @@ class Solver:
 _STATUS = {int(status): status for status in Status}
 
 
-class _Arrays:
-    """What a solve of m goals writes into."""
-
-    __slots__ = ("angles", "numbers", "positions", "rotations", "trace")
-
-    def __init__(self, m: int, n: int, stages: int) -> None:
-        self.angles: Array = np.empty((m, n, 3))
-        self.positions: Array = np.empty((m, n, 3))
-        self.rotations: Array = np.empty((m, n, 3, 3))
-        self.numbers: Array = np.empty((m, 7))
-        self.trace: Array = np.empty((stages, n, 3))
-
-    def part(self, rows: slice) -> "_Arrays":
-        """Return views of some rows."""
-        views = _Arrays(0, self.angles.shape[1], 0)
-        views.angles, views.positions = self.angles[rows], self.positions[rows]
-        views.rotations, views.numbers = self.rotations[rows], self.numbers[rows]
-        return views
-
-
 def _address(bound: Bound) -> int:
     """Return the address of a strategy, 0 for one that is passed over."""
     return 0 if bound.name == PASSED_OVER else bound.address
-
-
-def _checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
-    """Return values as a contiguous float64 array, or say what is wrong with them."""
-    try:
-        # A copy, always: compiled code is entered with writable, contiguous arrays only.
-        array = np.array(values, np.float64, order="C")
-    except (TypeError, ValueError):
-        raise InputError(f"{what}: expected numbers of shape {_shown(shape)}") from None
-    expects_rows = shape[0] is None
-    if array.ndim != len(shape) or array.shape[expects_rows:] != shape[expects_rows:]:
-        raise InputError(f"{what}: expected shape {_shown(shape)}, found {array.shape}")
-    # A few numbers are checked faster one by one than by numpy.
-    few = array.ravel().tolist() if array.size < 16 else (array.min(), array.max())
-    if not all(-LARGEST < value < LARGEST for value in few):
-        raise InputError(f"{what}: every number must be finite and below {LARGEST:g} in size")
-    return array
-
-
-def _shown(shape: tuple[int | None, ...]) -> str:
-    return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
-
-
-def _check_fit(chain: Chain, settings: Settings) -> None:
-    """Refuse settings that name joints the chain does not have."""
-    if settings.bend_reference > len(chain) - 1:
-        raise ChainError(
-            f"bend_reference {settings.bend_reference}: this chain of {len(chain)} joints "
-            f"allows 1 to {len(chain) - 1}"
-        )
-    held = settings.held.base + settings.held.end
-    if held > len(chain) - 1:
-        raise ChainError(
-            f"held: {held} joints held, this chain has {len(chain) - 1} before its end"
-        )

@@ -1,13 +1,15 @@
 """Solve the goals of a scene."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
-from limbik.core.solution import Solution, Status
+from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
+from limbik.core.solver2d import Solver2D
 from limbik.core.whole import WholeSolution, prepare
 
 
@@ -30,17 +32,56 @@ def solve_scene(
     if scene.solver is not None:
         batch = prepare(scene.solver, scene.chain, scene.settings)
         return list(_singles(batch(scene.goals, scene.follow)))
-    solver = Solver(scene.chain, scene.settings, registry)
+    solver = scene_solver(scene, registry)
     if not trace:
-        many = solver.follow if scene.follow else solver.solve_many
-        return list(_singles(many(scene.goals, fk_offsets=scene.fk_offsets)))
+        found = solve_part(solver, scene, slice(None))
+        return [found.single(row) for row in range(len(scene.goals))]
     solutions: list[Solution] = []
-    for goal in scene.goals:
+    for row, goal in enumerate(scene.goals):
         before = solutions[-1].continuity if scene.follow and solutions else None
-        solutions.append(
-            solver.solve(goal, fk_offsets=scene.fk_offsets, continuity=before, trace=True)
-        )
+        asked: dict[str, Any] = {"fk_offsets": scene.fk_offsets, "continuity": before}
+        if isinstance(solver, Solver2D) and scene.goal_turns is not None:
+            asked["goal_turn"] = scene.goal_turns[row]
+        solutions.append(solver.solve(goal, trace=True, **asked))
     return solutions
+
+
+def solve_part(
+    solver: Solver, scene: Scene, part: slice, continuity: Continuity | None = None
+) -> Solution:
+    """Solve some goals of a scene at once, as a path if the scene says so.
+
+    Args:
+        solver: The scene's.
+        scene: The scene.
+        part: Which goals.
+        continuity: Of the goal before them on a path.
+
+    Returns:
+        A solution with a leading goal axis.
+    """
+    asked: dict[str, Any] = {"fk_offsets": scene.fk_offsets}
+    if isinstance(solver, Solver2D) and scene.goal_turns is not None:
+        asked["goal_turns"] = scene.goal_turns[part]
+    if scene.follow:
+        return solver.follow(scene.goals[part], continuity=continuity, **asked)
+    return solver.solve_many(scene.goals[part], **asked)
+
+
+def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
+    """Return the solver a scene asks for: 2D where it has a pole.
+
+    Args:
+        scene: The scene.
+        registry: Where the strategies are looked up; a new `Registry()` if absent.
+
+    Raises:
+        InputError: The scene binds a rest pose that cannot stay.
+    """
+    if scene.pole is None:
+        return Solver(scene.chain, scene.settings, registry)
+    solver = Solver2D(scene.chain, scene.settings, registry, pole=scene.pole)
+    return solver.bind() if scene.bind else solver
 
 
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:

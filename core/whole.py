@@ -23,7 +23,8 @@ from limbik.core.solution import Solution
 from limbik.core.strategy import flatten, unflatten
 
 BUILT_IN_3D = "3d"
-"""Name of the solver that is not a plug-in: `limbik.core.solver.Solver`."""
+OWN_SOLVERS = (BUILT_IN_3D, "2d")
+"""Names of the solvers that are no plug-ins: `limbik.core.solver.Solver` and `Solver2D`."""
 
 Batch = Callable[[Array, bool], Solution]
 

@@ -15,7 +15,7 @@ CONFIGS = sorted((Path(__file__).parents[1] / "configs").glob("*.yaml"))
 
 
 def test_every_template_is_a_shipped_scene() -> None:
-    assert [path.stem for path in CONFIGS] == sorted(TEMPLATES)
+    assert sorted(path.stem for path in CONFIGS) == sorted(TEMPLATES)
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
@@ -43,6 +43,8 @@ def test_the_zero_poses_are_the_ones_the_comments_describe() -> None:
 
     np.testing.assert_allclose(ends["arm"], [18.0, 143.0 - 67.5, 0.0], atol=1e-9)
     np.testing.assert_allclose(ends["leg"], [9.0, 93.0 - 86.0, 13.0], atol=1e-9)
+    np.testing.assert_allclose(ends["leg-pole"], [9.0, 93.0 - 86.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(ends["finger"], [0.0, 0.0, 91.0], atol=1e-9)
     np.testing.assert_allclose(ends["spine"], [0.0, 156.6, -0.9], atol=0.1)
 
 
@@ -58,6 +60,9 @@ def test_the_zero_poses_are_the_ones_the_comments_describe() -> None:
         ("leg", "hip", (0, 90, 0), (1, 0, 0)),
         ("leg", "knee", (0, -90, 0), (0, 0, -1)),  # flexion: backward
         ("leg", "ankle", (0, 90, 0), (0, 1, 0)),  # dorsiflexion: up
+        ("leg-pole", "hip", (0, 90, 0), (0, 0, 1)),  # forward
+        ("leg-pole", "knee", (0, -90, 0), (0, 0, -1)),  # flexion: backward
+        ("finger", "middle", (0, -90, 0), (0, -1, 0)),  # flexion: down
         ("spine", "L5", (60, 0, 0), (-1, 0, 0)),  # to the left
         ("spine", "L5", (0, 60, 0), (0, 0, -1)),  # backward
     ],

@@ -74,7 +74,7 @@ RANGES: list[tuple[dict[str, Any], str]] = [
     ({"weight_range": (-1.1, 0.0)}, "greater than or equal to -1"),
     ({"weight_range": (0.0, 1.1)}, "less than or equal to 1"),
     ({"weight_range": (0.0,)}, "Field required"),
-    ({"bend_reference": 0}, "greater than or equal to 1"),
+    ({"bend_reference": -1}, "greater than or equal to 0"),
     ({"reference_axis": "z+"}, "'free', 'x+', 'x-', 'y+' or 'y-'"),
     ({"twist": 361.0}, "less than or equal to 360"),
     ({"aim_twist": "yes"}, "valid boolean"),

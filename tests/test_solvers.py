@@ -238,5 +238,5 @@ def test_the_schema_offers_the_solvers() -> None:
     from limbik.core.schema import scene_schema
 
     forms = scene_schema(REGISTRY)["properties"]["solver"]["anyOf"]
-    assert forms[0] == {"const": "3d"}
-    assert {"lambda-leg", "cosine-arm", "planar-fabrik", "fabrik"} <= set(forms[1]["enum"])
+    assert forms[:2] == [{"const": "3d"}, {"const": "2d"}]
+    assert {"lambda-leg", "cosine-arm", "planar-fabrik", "fabrik"} <= set(forms[2]["enum"])

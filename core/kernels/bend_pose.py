@@ -49,8 +49,36 @@ def find_bend_angles(
     Returns:
         False where the strategy gave something that is not finite.
     """
-    root, reach = options.root, options.root_to_end
-    count = body.offsets.shape[0] - 1 - root
+    return bone_angles(
+        distance, body.along, options.root, options.root_to_end, options, plugs, pose.bones
+    )
+
+
+@kernel
+def bone_angles(
+    distance: float,
+    along: Array,
+    root: int,
+    reach: float,
+    options: Options,
+    plugs: Plugs,
+    bones: Array,
+) -> bool:
+    """Ask the initial-bend method for the angle of every bone from a joint on, in 2D and 3D.
+
+    Args:
+        distance: Root to goal [length].
+        along: Length from joint 0 to each joint, (n,) [length].
+        root: Joint where the bend starts.
+        reach: Length from the root to the end [length].
+        options: Of the solve.
+        plugs: Of the solve.
+        bones: OUT: (3, n): lengths, weights, angles [rad] of the bones from the root on.
+
+    Returns:
+        False where the strategy gave something that is not finite.
+    """
+    count = along.shape[0] - 1 - root
     ratio = distance / reach
     # 000 §6.1(12)
     base = options.coefficient_base
@@ -59,24 +87,24 @@ def find_bend_angles(
     apex = clamp(ratio, 0.5, 1.0)
     spread = options.weight_max - options.weight_min
     for bone in range(count):
-        at = (body.along[root + bone] - body.along[root]) / reach
+        at = (along[root + bone] - along[root]) / reach
         c = clamp(1.0 - abs(apex - at), 0.0, 1.0)
         weight = 1.0 + options.weight_min + c * c * c * spread
-        length = body.along[root + bone + 1] - body.along[root + bone]
-        pose.bones[0, bone] = length / reach
-        pose.bones[1, bone] = weight * coefficient
-        pose.bones[2, bone] = nan
+        length = along[root + bone + 1] - along[root + bone]
+        bones[0, bone] = length / reach
+        bones[1, bone] = weight * coefficient
+        bones[2, bone] = nan
     call_initial_bend(
         plugs.initial_bend,
-        pose.bones[0, :count],
+        bones[0, :count],
         ratio,
-        pose.bones[1, :count],
+        bones[1, :count],
         plugs.params[0],
-        pose.bones[2, :count],
+        bones[2, :count],
     )
     total = 0.0
     for bone in range(count):
-        total += pose.bones[2, bone]
+        total += bones[2, bone]
     return isfinite(total)
 
 

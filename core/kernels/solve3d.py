@@ -91,18 +91,18 @@ def solve_goals(
     stages = 0
     for row in range(goals.shape[0]):
         if not chained:
-            _copy(kept, memory)
+            copy_rows(kept, memory)
         goal = vector(goals, row)
         stages = _solve(goal, body, options, plugs, fk, memory, pose, numbers[row], trace)
-        _copy(pose.angles, angles[row])
-        _copy(pose.positions, positions[row])
+        copy_rows(pose.angles, angles[row])
+        copy_rows(pose.positions, positions[row])
         for joint in range(n):
-            _copy(pose.world[joint], rotations[row, joint])
+            copy_rows(pose.world[joint], rotations[row, joint])
     return stages
 
 
 @kernel
-def _copy(source: Array, out: Array) -> None:
+def copy_rows(source: Array, out: Array) -> None:
     """Copy a matrix element by element; a slice assignment would allocate."""
     for row in range(out.shape[0]):
         for place_in_row in range(out.shape[1]):
@@ -165,9 +165,9 @@ def _solve(
 def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose) -> bool:
     """Set limits and angles of the initial pose; False where root control gave no number."""
     n, known = body.offsets.shape[0], memory[3, 0] > 0.0
-    _copy(body.low, pose.low)
-    _copy(body.high, pose.high)
-    _copy(body.rest, pose.angles)
+    copy_rows(body.low, pose.low)
+    copy_rows(body.high, pose.high)
+    copy_rows(body.rest, pose.angles)
     if plugs.root_control != 0:
         last = pose.directions
         for joint in range(n):

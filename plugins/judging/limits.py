@@ -3,6 +3,7 @@
 import numpy as np
 
 from limbik.core.rotation import wrap
+from limbik.core.solution2d import PlanarSolution
 from limbik.plugins.judging.motion import joint_turns
 from limbik.plugins.judging.run import NotJudged, Run
 
@@ -11,8 +12,10 @@ STILL = np.radians(0.02)  # smaller turns are rest [rad]
 
 def limit_excess(run: Run) -> float:
     """Largest angle beyond a range [rad]."""
-    angles = run.solution.angles
-    over = np.maximum(run.chain.low - angles, angles - run.chain.high)
+    angles, low, high = run.solution.angles, run.chain.low, run.chain.high
+    if isinstance(run.solution, PlanarSolution):
+        angles, (low, high) = run.solution.planar_angles, run.solution.planar_limits
+    over = np.maximum(low - angles, angles - high)
     return max(0.0, float(over.max()))
 
 
@@ -21,8 +24,11 @@ def chatter(run: Run) -> float:
     joint_turns(run)
     if not run.is_limited:
         raise NotJudged("no joint has a limit")
-    steps = wrap(np.diff(run.solution.angles, axis=0))
-    limited = np.isfinite(run.chain.high) & (run.chain.high > run.chain.low)
+    angles, low, high = run.solution.angles, run.chain.low, run.chain.high
+    if isinstance(run.solution, PlanarSolution):
+        angles, (low, high) = run.solution.planar_angles, run.solution.planar_limits
+    steps = wrap(np.diff(angles, axis=0))
+    limited = np.isfinite(high) & (high > low)
     turned = (steps[1:] * steps[:-1] < 0.0) & (np.abs(steps[1:]) > STILL)
     turned &= np.abs(steps[:-1]) > STILL
     seconds = len(run.goals) / run.rate

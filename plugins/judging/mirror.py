@@ -6,6 +6,7 @@ import numpy as np
 
 from limbik.core.settings import Settings
 from limbik.core.solver import Solver
+from limbik.core.solver2d import Solver2D
 from limbik.plugins.judging.run import NotJudged, Run
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -39,6 +40,8 @@ def mirrored_settings(settings: Settings) -> Settings:
 
 def asymmetry(run: Run) -> float:
     """Largest distance of a joint from its mirror image's, over the reach [-]."""
+    if isinstance(run.solver, Solver2D):
+        raise NotJudged("the mirror image of a pole is not solved for")
     settings = mirrored_settings(run.settings)
     solver = Solver(run.chain.mirrored(), settings, run.solver.registry)
     offsets = run.fk_offsets * np.array([-1.0, 1.0, -1.0])

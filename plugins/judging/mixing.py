@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from limbik.core.settings import Settings
-from limbik.core.solver import Solver
 from limbik.plugins.judging.run import NotJudged, Run
 
 SHARES = np.linspace(0.0, 1.0, 21)
@@ -14,8 +12,7 @@ def mix_detour(run: Run) -> float:
     goal = run.goals[len(run.goals) // 2]
     ends = []
     for share in SHARES.tolist():
-        given = run.settings.model_dump(exclude_unset=True) | {"fk_mix": share}
-        solver = Solver(run.chain, Settings(**given), run.solver.registry)
+        solver = run.solver.altered(fk_mix=share)
         ends.append(solver.solve(goal, fk_offsets=run.fk_offsets).positions[-1])
     places = np.array(ends)
     apart = float(np.linalg.norm(places[-1] - places[0]))

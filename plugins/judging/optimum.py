@@ -5,8 +5,6 @@ from typing import Any
 import numpy as np
 
 from limbik.core.rotation import Array
-from limbik.core.settings import Settings
-from limbik.core.solver import Solver
 from limbik.plugins.judging.run import NotJudged, Run
 
 STARTS = ("nth-root", "solved-arc", "uniform-arc")
@@ -22,15 +20,14 @@ def limit_error(run: Run) -> float:
         raise NotJudged("no joint has a limit; see excess_error")
     best: Array = np.full(len(run.goals), np.inf)
     for start in STARTS:
-        given: dict[str, Any] = run.settings.model_dump(exclude_unset=True)
-        given |= {
+        given: dict[str, Any] = {
             "initial_bend": start,
             "max_iterations": ROUNDS,
             "smoothing": 1.0,
             "finish": "newton",
         }
         given |= {"tolerance": min(run.settings.tolerance, 1e-6 * run.reach)}
-        solver = Solver(run.chain, Settings(**given), run.solver.registry)
+        solver = run.solver.altered(**given)
         found = solver.solve_many(run.goals, fk_offsets=run.fk_offsets)
         best = np.minimum(best, np.asarray(found.distance))
     miss = np.asarray(run.solution.distance) - best

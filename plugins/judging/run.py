@@ -11,7 +11,9 @@ from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene, require_own_solver
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
+from limbik.core.solution2d import PlanarSolution
 from limbik.core.solver import Solver
+from limbik.core.solving import scene_solver, solve_part
 
 RATE = 60.0  # goals a second where a scene gives no rate
 
@@ -75,6 +77,8 @@ class Run:
     @property
     def is_limited(self) -> bool:
         """Whether any joint before the end has a limit."""
+        if isinstance(self.solution, PlanarSolution):
+            return bool(np.isfinite(self.solution.planar_limits).any())
         return bool(np.isfinite(self.chain.high[:-1]).any())
 
     def solve(self, goals: Array, solver: Solver | None = None) -> Solution:
@@ -93,9 +97,8 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     """
     rate = RATE if scene.judge is None else scene.judge.rate
     require_own_solver(scene, "limbik judge")
-    solver = Solver(scene.chain, scene.settings, registry)
-    many = solver.follow if scene.follow else solver.solve_many
-    solution = many(scene.goals, fk_offsets=scene.fk_offsets)
+    solver = scene_solver(scene, registry)
+    solution = solve_part(solver, scene, slice(None))
     return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)
 
 

@@ -14,7 +14,7 @@ from limbik.core.scene import Scene
 from limbik.core.slots import SOLVER
 from limbik.core.solution import AT_LIMIT, Solution
 from limbik.core.solving import solve_scene
-from limbik.core.whole import BUILT_IN_3D, prepare
+from limbik.core.whole import OWN_SOLVERS, prepare
 from limbik.plugins.output.plot import FAINT, INK, LIMIT, LOOK, PAPER
 from limbik.plugins.output.records import solve_record, status_label
 
@@ -49,7 +49,7 @@ def compare(scene: Scene, names: Sequence[str], registry: Registry) -> Compariso
 
     Args:
         scene: The scene; its own solver is left aside.
-        names: Names of solvers, `3d` for limbik's own.
+        names: Names of solvers, `3d` and `2d` for limbik's own.
         registry: Where they are looked up.
 
     Raises:
@@ -60,10 +60,13 @@ def compare(scene: Scene, names: Sequence[str], registry: Registry) -> Compariso
     ready = {}
     for name in names:
         try:
-            bound = None if name == BUILT_IN_3D else registry.bind(SOLVER.name, name)
+            bound = None if name in OWN_SOLVERS else registry.bind(SOLVER.name, name)
             if bound is not None:
                 prepare(bound, scene.chain, scene.settings)
-            ready[name] = replace(scene, solver=bound)
+            in_plane = name == "2d"
+            if in_plane and scene.pole is None:
+                raise InputError("the 2D solver needs a scene with a pole")
+            ready[name] = replace(scene, solver=bound, pole=scene.pole if in_plane else None)
         except InputError as error:
             faults += [replace(fault, key=f"--solvers {name}") for fault in error.faults]
     if not names:

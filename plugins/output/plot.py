@@ -17,7 +17,14 @@ from limbik.core.errors import EnvironmentProblem, Fault, InputError
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
-from limbik.plugins.output.records import status_label
+from limbik.core.solution2d import PlanarSolution
+from limbik.plugins.output.plotplane import (
+    draw_planar,
+    draw_plane,
+    legend_entries,
+    plane_points,
+)
+from limbik.plugins.output.records import outcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -125,6 +132,8 @@ def _bounds(solutions: Sequence[Solution]) -> Bounds:
     """Lowest and highest corner of a box that holds all drawn, the same for every picture."""
     poses = [places for solution in solutions for _, places in _poses(solution)]
     points = np.concatenate([*poses, *([solution.goal] for solution in solutions)])
+    poles = [plane_points(s) for s in solutions if isinstance(s, PlanarSolution)]
+    points = np.concatenate([points, *poles])
     low, high = points.min(axis=0), points.max(axis=0)
     extent = float((high - low).max()) or 1.0
     spare = np.maximum(0.55 * extent - (high - low), 0.0) / 2.0 + 0.05 * extent  # no flat boxes
@@ -142,6 +151,8 @@ def _limited(scene: Scene, solution: Solution) -> dict[str, list[str]]:
 
 def _draw_limb(axes: Any, scene: Scene, solution: Solution, order: tuple[int, ...]) -> None:
     """Draw stages, joints and goal; `order` picks the world axes that are drawn."""
+    if isinstance(solution, PlanarSolution):
+        draw_plane(axes, solution, order)
     for level, (stage, places) in enumerate(_poses(solution), 2):
         style = {k: v for k, v in STAGES[stage].items() if k != "label"}
         axes.plot(*places[:, order].T, zorder=level, solid_capstyle="round", **style)
@@ -190,6 +201,9 @@ def _draw_views(
     low, high = bounds
     for row, (order, title) in enumerate((((0, 1), "x and y"), ((2, 1), "z and y"))):
         axes: Any = figure.add_subplot(grid[row, 1])
+        if row == 0 and isinstance(solution, PlanarSolution):
+            draw_planar(axes, solution, STAGES, GOAL, LIMIT)
+            continue
         _draw_limb(axes, scene, solution, order)
         across, up = order
         axes.set(xlim=(low[across], high[across]), ylim=(low[up], high[up]), aspect="equal")
@@ -200,10 +214,10 @@ def _draw_views(
 
 def _caption(axes: Any, scene: Scene, name: str, solution: Solution) -> None:
     """Write the goal's name, how it went, and the joints at their limits."""
-    outcome = f"{status_label(solution)}, distance {float(solution.distance):.2g}"
+    ending = f"{outcome(solution)}, distance {float(solution.distance):.2g}"
     lines = (
         (34.0, name, {"fontsize": 11, "fontweight": "bold", "color": INK}),
-        (20.0, outcome, {"color": GOAL if solution.reached else LIMIT}),
+        (20.0, ending, {"color": GOAL if solution.reached else LIMIT}),
         (8.0, _limit_text(scene, solution), {"fontsize": 7.5, "color": LIMIT}),
     )
     for points, text, style in lines:
@@ -230,7 +244,11 @@ def _legend(figure: "Figure", scene: Scene, shown: int, total: int) -> None:
     entries = [Line2D([], [], **style) for style in STAGES.values()]
     entries.append(Line2D([], [], **dot, ms=9, mfc="none", mec=GOAL, mew=2.0, label="goal"))
     entries.append(Line2D([], [], **dot, ms=7, mfc=LIMIT, mec=LIMIT, label="joint at a limit"))
-    figure.legend(handles=entries, loc="lower center", ncols=6, frameon=False, labelcolor=INK)
+    columns = len(entries)
+    if scene.pole is not None:
+        legend_entries(entries, stages=shown == 1)
+        columns = -(-len(entries) // 2)
+    figure.legend(handles=entries, loc="lower center", ncols=columns, frameon=False, labelcolor=INK)
     goals = f"{total} goals" if total > 1 else "1 goal"
     title = f"{scene.name}: {len(scene.chain)} joints, {goals}"
     title += f", the first {shown} shown" if shown < total else ""

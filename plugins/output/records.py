@@ -16,6 +16,7 @@ from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
+from limbik.core.solution2d import PlanarSolution, PlaneFrom
 from limbik.core.solving import are_met
 from limbik.plugins.output.servo import ServoPose
 
@@ -69,6 +70,17 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "bend_vector": solution.bend_vector.tolist(),
         "at_limits": list(solution.limits_touched()),
     }
+    if isinstance(solution, PlanarSolution):
+        record["planar"] = {
+            "angles": np.degrees(solution.planar_angles).tolist(),
+            "plane": solution.plane.T.tolist(),
+            "plane_from": PlaneFrom(int(solution.plane_from)).label,
+            "pole": solution.pole.tolist(),
+            "rotor": None if solution.rotor is None else solution.rotor.T.tolist(),
+            "goal_axes": None
+            if solution.goal_rotation is None
+            else solution.goal_rotation.T.tolist(),
+        }
     if stages and solution.trace is not None:
         record["stages"] = [
             {
@@ -136,6 +148,12 @@ def _columns(names: Iterable[str]) -> list[str]:
 def status_label(solution: Solution) -> str:
     """Give the status of one solution as a word."""
     return str(getattr(solution.status, "label", solution.status))
+
+
+def outcome(solution: Solution) -> str:
+    """Give the status for people, with what else they should know."""
+    label = status_label(solution)
+    return f"{label} ({solution.remark})" if solution.remark else label
 
 
 def _finite(value: Any) -> Any:

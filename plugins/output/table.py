@@ -14,7 +14,7 @@ from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.plugins.output.listing import range_text
-from limbik.plugins.output.records import status_label
+from limbik.plugins.output.records import outcome
 from limbik.plugins.output.servo import ServoPose
 
 _FIXED_WIDTH = 30  # status, distance, rounds and the gaps between them
@@ -43,7 +43,7 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     for row, (name, solution) in enumerate(zip(scene.goal_names, solutions, strict=True)):
         table.add_row(
             Text(name),
-            Text(_status(solution), style="green" if solution.reached else "red"),
+            Text(outcome(solution), style="green" if solution.reached else "red"),
             f"{float(solution.distance):.2g}",
             str(solution.iterations),
             *(joints[title][row] for title in shown),
@@ -173,11 +173,6 @@ def new_console() -> Console:
     return console if console.is_terminal else _Console(highlight=False, width=_WIDE)
 
 
-def _status(solution: Solution) -> str:
-    """The status, and what the solver has to remark."""
-    return ": ".join(filter(None, (status_label(solution), solution.remark)))
-
-
 def print_comparison(scene: Scene, solutions: Mapping[str, Sequence[Solution]]) -> None:
     """Print one line a solver and goal, then how many goals each reaches."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
@@ -188,7 +183,7 @@ def print_comparison(scene: Scene, solutions: Mapping[str, Sequence[Solution]]) 
     for solver, found in solutions.items():
         for name, solution in zip(scene.goal_names, found, strict=True):
             style = "green" if solution.reached else "red"
-            cells = Text(solver), Text(name), Text(_status(solution), style=style)
+            cells = Text(solver), Text(name), Text(outcome(solution), style=style)
             table.add_row(*cells, f"{float(solution.distance):.2g}", str(solution.iterations))
     console = new_console()
     console.print(table)

@@ -8,7 +8,7 @@ import numpy as np
 
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene, require_own_solver
-from limbik.core.solver import Solver
+from limbik.core.solving import scene_solver
 from limbik.plugins.output.files import write_whole
 from limbik.plugins.paths.joints import JointMotion, degrees_to_limits, joint_motion
 from limbik.plugins.paths.program import Trajectory
@@ -61,7 +61,7 @@ def run_trajectory(
     assert section is not None  # scene_trajectory has refused a scene without
     samples = planned.sample(section.dt if dt is None else dt)
     before_solving()
-    solver = Solver(scene.chain, scene.settings, registry)
+    solver = scene_solver(scene, registry)
     motion = joint_motion(samples, solver, degrees_to_limits(section.joint_speeds))
     _write(scene, planned, motion, files)
     if as_json:

@@ -17,6 +17,7 @@ from limbik.core.errors import Fault, InputError
 from limbik.core.rotation import Array
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
+from limbik.core.solver2d import Solver2D
 from limbik.plugins.paths.quaternions import from_matrix, half_angle, short_way
 from limbik.plugins.paths.samples import Samples
 
@@ -129,7 +130,7 @@ def joint_motion(
     angles = _unwound(solver, solution.angles)
     found = [
         *_unreached(samples, solver, solution),
-        *_past_limits(samples, solver, solution.angles),
+        *(() if isinstance(solver, Solver2D) else _past_limits(samples, solver, solution.angles)),
         *_too_fast(samples, solver, angles, allowed),
     ]
     ordered = tuple(sorted(found, key=lambda failure: (failure.first, failure.joint)))

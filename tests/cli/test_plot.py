@@ -60,3 +60,29 @@ def test_a_plot_without_matplotlib_ends_with_3_and_names_the_extra(
 
     assert (status, out) == (3, "")
     assert err == "limbik: drawing needs matplotlib: pip install 'limbik[plot]'\n"
+
+
+def test_a_picture_of_the_2d_solver_shows_plane_and_every_stage(run: Run, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    import matplotlib as mpl
+
+    text = """\
+limbik: 1
+solver: 2d
+chain:
+  joints:
+    - {name: hip}
+    - {name: knee, offset: [0, 0, 43], planar: [-50, 0]}
+    - {name: ankle, offset: [0, 0, 40]}
+    - {name: toe, offset: [0, 0, 14]}
+pole: {position: [20, 70, 30]}
+goals: [{name: step, position: [25, 5, 55]}]
+"""
+    (tmp_path / "plane.yaml").write_text(text, encoding="utf-8")
+    with mpl.rc_context({"svg.fonttype": "none"}):  # text stays text
+        run("solve", "plane.yaml", "--plot", "p.svg")
+    picture = (tmp_path / "p.svg").read_text(encoding="utf-8")
+
+    words = ("IK plane", "pole and IK plane", "simple aim", "axis to pole", "with FK", "CCD rounds",
+             "initial bend", "knee -50°", "at limit: knee planar")  # fmt: skip
+    assert [word for word in words if word not in picture] == []

@@ -1,0 +1,32 @@
+"""What a scene says of solver and pole must fit together."""
+
+from collections.abc import Iterator
+
+from limbik.core.errors import Fault
+from limbik.core.scenemodel import CsvModel, SceneModel
+from limbik.core.settings import misfits_in_2d
+from limbik.core.yamlfile import Document, KeyPath
+
+
+def solver_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+    """Check that a pole is there for the 2D solver and only for it, and no option of the other."""
+    if model.solver != "2d":
+        if model.pole is not None:
+            message = "belongs to the 2D solver"
+            hint = "add 'solver: 2d'"
+            yield document.fault("solver", message, ("pole",), hint=hint, at_key=True)
+        return
+    if model.pole is None:
+        message = "the 2D solver needs a pole"
+        hint = "add 'pole: {position: [x, y, z]}'"
+        yield document.fault("missing", message, ("solver",), hint=hint)
+    for key, code, message in misfits_in_2d(model.options):
+        place: KeyPath = ("options", key)
+        yield document.fault(code, message, place, at_key=code == "solver")
+    if isinstance(model.goals, CsvModel) or (model.pole is not None and model.pole.rotor):
+        return
+    for number, goal in enumerate(model.goals):
+        if goal.rotation is not None and model.pole is not None:
+            message = "nothing turns with this goal; it moves a pole rotor"
+            hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
+            yield document.fault("solver", message, ("goals", number, "rotation"), hint=hint)

@@ -1,0 +1,84 @@
+"""What goes into a solve, checked, and the arrays it writes into."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limbik.core.chain import Chain
+from limbik.core.errors import ChainError, InputError
+from limbik.core.rotation import Array
+from limbik.core.settings import Settings
+
+LARGEST = 1e100  # squares of larger numbers overflow
+
+
+class Arrays:
+    """What a solve of m goals writes into."""
+
+    __slots__ = ("angles", "numbers", "positions", "rotations", "trace")
+
+    def __init__(self, m: int, n: int, stages: int, columns: int) -> None:
+        self.angles: Array = np.empty((m, n, 3))
+        self.positions: Array = np.empty((m, n, 3))
+        self.rotations: Array = np.empty((m, n, 3, 3))
+        self.numbers: Array = np.empty((m, columns))
+        self.trace: Array = np.empty((stages, n, 3))
+
+    def part(self, rows: slice) -> "Arrays":
+        """Return views of some rows."""
+        views = Arrays(0, self.angles.shape[1], 0, 0)
+        views.angles, views.positions = self.angles[rows], self.positions[rows]
+        views.rotations, views.numbers = self.rotations[rows], self.numbers[rows]
+        return views
+
+
+def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
+    """Return values as a contiguous float64 array, or say what is wrong with them.
+
+    Args:
+        values: What was given.
+        shape: What it must have; None for any length of the first axis.
+        what: Its name in a message.
+
+    Raises:
+        InputError: The shape is another, or a number is not finite.
+    """
+    try:
+        # A copy, always: compiled code is entered with writable, contiguous arrays only.
+        array = np.array(values, np.float64, order="C")
+    except (TypeError, ValueError):
+        raise InputError(f"{what}: expected numbers of shape {_shown(shape)}") from None
+    expects_rows = shape[0] is None
+    if array.ndim != len(shape) or array.shape[expects_rows:] != shape[expects_rows:]:
+        raise InputError(f"{what}: expected shape {_shown(shape)}, found {array.shape}")
+    # A few numbers are checked faster one by one than by numpy.
+    few = array.ravel().tolist() if array.size < 16 else (array.min(), array.max())
+    if not all(-LARGEST < value < LARGEST for value in few):
+        raise InputError(f"{what}: every number must be finite and below {LARGEST:g} in size")
+    return array
+
+
+def _shown(shape: tuple[int | None, ...]) -> str:
+    return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
+
+
+def check_joints(chain: Chain, settings: Settings, first: int) -> None:
+    """Refuse settings that name joints the chain does not have.
+
+    Args:
+        chain: The chain.
+        settings: Of the solver.
+        first: The first joint that may be the bend reference.
+
+    Raises:
+        ChainError: There is no such joint, or more are held than there are before the end.
+    """
+    if not first <= settings.bend_reference <= len(chain) - 1:
+        raise ChainError(
+            f"bend_reference {settings.bend_reference}: this chain of {len(chain)} joints "
+            f"allows {first} to {len(chain) - 1}"
+        )
+    held = settings.held.base + settings.held.end
+    if held > len(chain) - 1:
+        raise ChainError(
+            f"held: {held} joints held, this chain has {len(chain) - 1} before its end"
+        )

@@ -1,0 +1,297 @@
+"""`Solver2D`: a chain that bends in the plane of base, goal and pole (000 §6.2, §7.5)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limbik.core.chain import Chain
+from limbik.core.errors import Fault, InputError
+from limbik.core.flatten2d import (
+    Planar,
+    flat_planar,
+    flat_plane_body,
+    flat_plane_options,
+)
+from limbik.core.pole import Pole, goal_axes, rotor_frames, turned_poles
+from limbik.core.registry import Registry
+from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.settings import Settings, misfits_in_2d
+from limbik.core.solution import Continuity, Solution
+from limbik.core.solution2d import PlanarSolution, PlaneFrom
+from limbik.core.solveinput import check_joints, checked
+from limbik.core.solver import Solver
+
+COLUMNS: Final = 17  # numbers of a solve before its planar angles
+
+
+class Solver2D(Solver):
+    """Solves goals for one chain that bends toward a pole; without state of its own.
+
+    Limits are the planar joints' (`Joint.planar`), not those of heading, pitch and bank.
+
+    Args:
+        chain: What to pose.
+        settings: Options; the document's defaults when left out.
+        registry: Where strategies are looked up; one with all installed plug-ins when left out.
+        pole: Position in the world [length], or a `Pole`, which may have a rotor.
+        **options: Single settings by name, instead of or on top of `settings`.
+
+    Raises:
+        ChainError: The bend reference is not a joint of this chain.
+        InputError: A setting belongs to the 3D solver, or a strategy or its parameters are wrong.
+        pydantic.ValidationError: An option is out of its range.
+    """
+
+    _slots: ClassVar[tuple[str, ...]] = ("initial_bend",)
+    _early_stages: ClassVar[tuple[str, ...]] = (
+        "initial",
+        "simple aim",
+        "reference axis",
+        "fk",
+        "aim",
+        "bend",
+    )
+
+    def __init__(
+        self,
+        chain: Chain,
+        settings: Settings | None = None,
+        registry: Registry | None = None,
+        *,
+        pole: Pole | Sequence[float] | Array,
+        **options: Any,
+    ) -> None:
+        if not isinstance(pole, Pole):
+            x, y, z = checked(pole, (3,), "pole").tolist()
+            pole = Pole(position=(x, y, z))
+        self.pole = pole
+        super().__init__(chain, settings, registry, **options)
+
+    @staticmethod
+    def _check_fit(chain: Chain, settings: Settings) -> None:
+        misfits = list(misfits_in_2d(settings))
+        if misfits:
+            raise InputError(Fault(code, message, key) for key, code, message in misfits)
+        check_joints(chain, settings, 0)
+
+    def _flatten(self) -> tuple[Any, ...]:
+        chain, settings = self.chain, self.settings
+        return (
+            flat_plane_body(chain, settings),
+            flat_plane_options(chain, settings),
+            flat_planar(chain, settings),
+        )
+
+    @property
+    def _planar(self) -> Planar:
+        found: Planar = self._fixed[2]
+        return found
+
+    @cached_property
+    def _kernel(self) -> Callable[..., int]:
+        from limbik.core.kernels.solve2d import solve_plane_goals
+
+        return solve_plane_goals
+
+    def solve(
+        self,
+        goal: ArrayLike,
+        *,
+        fk_offsets: ArrayLike | None = None,
+        continuity: Continuity | None = None,
+        trace: bool = False,
+        pole: ArrayLike | None = None,
+        goal_turn: ArrayLike | None = None,
+    ) -> PlanarSolution:
+        """Put the chain's end on a goal, bent toward the pole.
+
+        Args:
+            goal: World position, (3,) [length].
+            fk_offsets: FK component relative to the rest pose, HPB, (n, 3) [rad].
+            continuity: What an earlier solve returned; None solves without a past (M-02).
+            trace: Whether to return every stage's pose.
+            pole: Another position for the pole, (3,) [length].
+            goal_turn: How the goal is turned in the world, HPB, (3,) [rad], or NaNs; moves a
+                rotor only.
+
+        Returns:
+            The pose with status, distance, IK plane and the continuity for a next solve.
+
+        Raises:
+            InputError: Something given is not finite or has another shape.
+            PluginError: The initial-bend method gave a result that is not a number.
+        """
+        goals = checked(goal, (3,), "goal").reshape(1, 3)
+        poles = None if pole is None else checked(pole, (3,), "pole").reshape(1, 3)
+        turns = None if goal_turn is None else _turns(goal_turn, (3,)).reshape(1, 3)
+        asked = self._ask(goals, poles, turns)
+        return asked.finish(self._solve_row(asked.rows, fk_offsets, continuity, trace))
+
+    def solve_many(
+        self,
+        goals: ArrayLike,
+        *,
+        fk_offsets: ArrayLike | None = None,
+        threads: int | None = None,
+        poles: ArrayLike | None = None,
+        goal_turns: ArrayLike | None = None,
+    ) -> PlanarSolution:
+        """Solve goals that have nothing to do with each other, on all cores.
+
+        Args:
+            goals: World positions, (m, 3) [length].
+            fk_offsets: As in `solve`, one set for all goals.
+            threads: How many to use; None for as many as there are cores.
+            poles: Other positions for the pole, (m, 3) [length].
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
+
+        Returns:
+            A solution whose arrays have a leading goal axis; bit for bit what `solve` gives.
+
+        Raises:
+            InputError: Something given is not finite or has another shape.
+            PluginError: The initial-bend method gave a result that is not a number.
+        """
+        points = checked(goals, (None, 3), "goals")
+        asked = self._ask_many(points, poles, goal_turns)
+        return asked.finish(self._solve_rows(asked.rows, fk_offsets, threads))
+
+    def follow(
+        self,
+        goals: ArrayLike,
+        *,
+        fk_offsets: ArrayLike | None = None,
+        continuity: Continuity | None = None,
+        poles: ArrayLike | None = None,
+        goal_turns: ArrayLike | None = None,
+    ) -> PlanarSolution:
+        """Solve a path in order, each goal with the continuity of the one before.
+
+        Args:
+            goals: World positions, (m, 3) [length].
+            fk_offsets: As in `solve`, one set for all goals.
+            continuity: State before the first goal; None for the rest pose's.
+            poles: Other positions for the pole, (m, 3) [length].
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
+
+        Returns:
+            A solution with a leading goal axis and the continuity after the last goal.
+
+        Raises:
+            InputError: Something given is not finite or has another shape.
+            PluginError: The initial-bend method gave a result that is not a number.
+        """
+        points = checked(goals, (None, 3), "goals")
+        asked = self._ask_many(points, poles, goal_turns)
+        return asked.finish(self._follow_rows(asked.rows, fk_offsets, continuity))
+
+    def bind(self, goal: ArrayLike | None = None) -> "Solver2D":
+        """Return this solver bound to the rest pose: there the pose stays (M-04).
+
+        See `limbik.core.bind.bound`.
+        """
+        from limbik.core.bind import bound
+
+        return bound(self, goal)
+
+    def altered(self, **options: Any) -> "Solver2D":
+        """Return a solver with some settings changed; a bound one stays bound."""
+        found = Solver2D(self.chain, self._altered(options), self.registry, pole=self.pole)
+        ours, theirs = self._planar, found._planar
+        if ours.bound.any() or ours.pole_turn or ours.keeps_shape != theirs.keeps_shape:
+            return found.variant(
+                theirs._replace(
+                    keeps_shape=ours.keeps_shape, pole_turn=ours.pole_turn, bound=ours.bound
+                )
+            )
+        return found
+
+    def variant(self, planar: Planar, **options: Any) -> "Solver2D":
+        """Return a solver with other planar numbers and settings, for `limbik.core.bind`."""
+        found = Solver2D(self.chain, self._altered(options), self.registry, pole=self.pole)
+        found._fixed = (*found._fixed[:2], planar)
+        return found
+
+    def _ask_many(
+        self, goals: Array, poles: ArrayLike | None, goal_turns: ArrayLike | None
+    ) -> "_Asked":
+        several = None if poles is None else checked(poles, (None, 3), "poles")
+        turns = None if goal_turns is None else _turns(goal_turns, (None, 3))
+        for given, what in ((several, "poles"), (turns, "goal turns")):
+            if given is not None and len(given) != len(goals):
+                raise InputError(f"{what}: expected {len(goals)}, one a goal, found {len(given)}")
+        return self._ask(goals, several, turns)
+
+    def _ask(self, goals: Array, poles: Array | None, turns: Array | None) -> "_Asked":
+        """Put goals and poles side by side, the poles turned by the rotor unless given."""
+        goals = self._goals(goals)
+        rotor, place = self.pole.turns_by, self.pole.position
+        axes = None if turns is None else hpb_to_matrix(turns)
+        frames = None
+        if rotor is not None:
+            fixed = np.array(place)
+            frames = rotor_frames(self.chain, rotor, fixed, goals, axes)
+            if poles is None:
+                poles = turned_poles(self.chain, fixed, frames)
+        rows = np.empty((len(goals), 6))
+        rows[:, :3] = goals
+        rows[:, 3:] = place if poles is None else poles
+        return _Asked(rows, frames, goal_axes(self.chain, rotor, frames, axes))
+
+    @property
+    def _columns(self) -> int:
+        return COLUMNS + len(self.chain)
+
+    def _solution(self, numbers: Array, row: Array, **fields: Any) -> PlanarSolution:
+        source = numbers[..., 7]
+        return PlanarSolution(
+            **fields,
+            plane=numbers[..., 8:COLUMNS].reshape(*numbers.shape[:-1], 3, 3),
+            plane_from=_PLANE_FROM[int(source)] if numbers.ndim == 1 else source.astype(np.int64),
+            planar_angles=numbers[..., COLUMNS:],
+            planar_limits=self._limits,
+            pole=row[..., 3:],
+        )
+
+    @cached_property
+    def _limits(self) -> Array:
+        return np.stack([self._planar.low, self._planar.high])
+
+
+def _turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
+    """Return turns of goals; a row of NaNs stands for a goal without one."""
+    try:
+        rows = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        return checked(values, shape, "goal turns")
+    absent = np.isnan(rows).all(axis=-1, keepdims=True)
+    found = checked(np.where(absent, 0.0, rows), shape, "goal turns")
+    return np.where(absent, np.nan, found)
+
+
+_PLANE_FROM = {int(source): source for source in PlaneFrom}
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What a call asks for: rows of goal and pole, the rotor's and the goals' axes."""
+
+    rows: Array
+    frames: Array | None
+    axes: Array | None
+
+    def finish(self, found: Solution) -> PlanarSolution:
+        """Add the axes of rotor and goal to what the kernel found."""
+        assert isinstance(found, PlanarSolution)
+        if self.frames is None and self.axes is None:
+            return found
+        pick: Any = 0 if found.goal.ndim == 1 else slice(None)
+        return replace(
+            found,
+            rotor=None if self.frames is None else self.frames[pick],
+            goal_rotation=None if self.axes is None else self.axes[pick],
+        )
