@@ -60,19 +60,16 @@ def _end_directions(chain: Chain, rest: Array) -> Array:
     return np.where(length > SHORTEST, away / np.maximum(length, SHORTEST), 0.0)
 
 
-def _reaches(chain: Chain, settings: Settings) -> tuple[float, float]:
-    """Return the lengths base→root and root→end (3D A-06).
+def _root_to_end(chain: Chain, settings: Settings) -> float:
+    """Return the length from the bend root to the end (3D A-06).
 
-    Bone sums in the Z layout, straight distances in the initial pose in the off-axis layout.
+    A bone sum in the Z layout, the straight distance in the initial pose in the off-axis layout.
     """
     root = settings.bend_reference - 1
     if not settings.off_axis:
-        return float(chain.lengths[:root].sum()), float(chain.lengths[root:].sum())
+        return float(chain.lengths[root:].sum())
     positions, _ = forward_kinematics(chain, np.clip(chain.rest, chain.low, chain.high))
-    return (
-        float(np.linalg.norm(positions[root] - positions[0])),
-        float(np.linalg.norm(positions[-1] - positions[root])),
-    )
+    return float(np.linalg.norm(positions[-1] - positions[root]))
 
 
 def flat_options(chain: Chain, settings: Settings) -> Options:
@@ -81,7 +78,7 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
     Raises:
         ChainError: The bones from the bend root on have no length.
     """
-    base_to_root, root_to_end = _reaches(chain, settings)
+    root_to_end = _root_to_end(chain, settings)
     if not root_to_end > SHORTEST:
         name = chain.names[settings.bend_reference - 1]
         raise ChainError("the chain has no length from the bend root to the end", name)
@@ -101,7 +98,6 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         weight_min=settings.weight_range[0],
         weight_max=settings.weight_range[1],
         root=settings.bend_reference - 1,
-        base_to_root=base_to_root,
         root_to_end=root_to_end,
         axis_x=axis_x,
         axis_y=axis_y,

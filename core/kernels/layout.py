@@ -50,8 +50,6 @@ class Options(NamedTuple):
     weight_max: float
     root: int
     """Index of the bend root: the joint before the bend reference."""
-    base_to_root: float
-    """[length]"""
     root_to_end: float
     """[length]"""
     axis_x: float
