@@ -5,15 +5,14 @@ from typing import Annotated
 
 import typer
 
+from limbik.plugins.commands.common import AsJson, SceneFile
 from limbik.plugins.output.failures import reported
 
 
 def compare(
-    scene: Annotated[str, typer.Argument(help="Scene file (YAML), or - for standard input.")],
+    scene: SceneFile,
     solvers: Annotated[str, typer.Option(help="Names of solvers, separated by commas.")],
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Write one JSON object to stdout.")
-    ] = False,
+    as_json: AsJson = False,
     plot: Annotated[
         Path | None, typer.Option(help="Draw them side by side to a .png, .svg or .pdf file.")
     ] = None,

@@ -1,0 +1,1 @@
+"""The commands of `limbik`, one a file: read, call, print."""

@@ -1,0 +1,25 @@
+"""What several commands share: arguments and notices."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from limbik.core.scene import Scene
+
+SceneFile = Annotated[str, typer.Argument(help="Scene file (YAML), or - for standard input.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Write one JSON object to stdout.")]
+
+
+def announce_compiling() -> None:
+    """Say on stderr that the first solve will take long, when it will."""
+    from limbik.core.jit import is_compiled_before
+
+    if not is_compiled_before():
+        typer.echo("limbik: compiling machine code, once for this version ...", err=True)
+
+
+def say_notes(scene: "Scene") -> None:
+    """Write a scene's notes to stderr."""
+    for note in scene.notes:
+        typer.echo(f"{scene.document.name}: note: {note}", err=True)
