@@ -44,5 +44,7 @@ def view(
             if open_browser:
                 webbrowser.open(viewer.url)
             viewer.wait()
+        except KeyboardInterrupt:  # the usual end
+            pass
         finally:
             viewer.close()

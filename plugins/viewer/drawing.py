@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from viser import SceneApi
 
 from limbik.core.rotation import Array
@@ -59,7 +60,7 @@ class Limb:
             still,
             somewhere,
             batched_scales=np.full((count, 3), size),
-            batched_colors=np.tile(np.uint8(JOINT), (count, 1)),
+            batched_colors=_joint_colours(count, set()),
             lod="off",
         )
 
@@ -74,13 +75,11 @@ class Limb:
         ways = places[1:] - places[:-1]
         lengths = np.linalg.norm(ways, axis=1)
         thick = np.minimum(0.9 * self._size, 0.4 * lengths)
-        colours = np.tile(np.uint8(JOINT), (len(places), 1))
-        colours[list(blocking)] = BLOCKING
         self._bones.batched_positions = places[:-1].astype(np.float32)
         self._bones.batched_wxyzs = along(ways).astype(np.float32)
         self._bones.batched_scales = np.stack([thick, thick, lengths], 1).astype(np.float32)
         self._joints.batched_positions = places.astype(np.float32)
-        self._joints.batched_colors = colours
+        self._joints.batched_colors = _joint_colours(len(places), blocking)
 
     @property
     def visible(self) -> bool:
@@ -238,10 +237,15 @@ def bend_direction(solution: Solution) -> tuple[Array, Array] | None:
     return solution.positions[0], way
 
 
-def line_colours(colours: Array) -> Array:
+def _joint_colours(count: int, blocking: set[int]) -> NDArray[np.uint8]:
+    shades = [BLOCKING if joint in blocking else JOINT for joint in range(count)]
+    return np.array(shades, np.uint8)
+
+
+def line_colours(colours: ArrayLike) -> NDArray[np.uint8]:
     """Return colours (m, 3) for the two ends of m segments; the page takes them as linear light."""
     linear = 255.0 * (np.asarray(colours) / 255.0) ** 2.2
-    return np.repeat(np.round(linear).astype(np.uint8)[:, None], 2, 1)
+    return np.repeat(np.round(linear).astype(np.uint8)[:, None], 2, axis=1)
 
 
 def _set(handle: Any, points: Array, colours: Array | None = None) -> None:

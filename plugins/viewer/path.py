@@ -47,7 +47,7 @@ class Path:
             step = 1.0 / scene.judge.rate
         elif scene.body is not None and scene.body.frame_time:
             step = scene.body.frame_time
-        times = np.arange(len(scene.goals)) * step
+        times = np.asarray(np.arange(len(scene.goals)) * step, np.float64)
         return cls(times, scene.goals, scene.goal_names, scene.goal_turns, note)
 
     @classmethod

@@ -27,7 +27,7 @@ class PosePanel:
         gui, one = page.server.gui, self._session.chain
         place = Control(("goal",), "vector", size=3, text="where the end shall go, world")
         self._goal = add_control(gui, place, tuple(one.goal), self._set_goal)
-        self._stage = gui.add_slider("stage", 0, 1, 1, 1, hint="poses of the solve, one by one")
+        self._stage: Any = gui.add_slider("stage", 0, 1, 1, 1, hint="poses of the solve")
         self._stage.on_update(self._set_stage)
         self._stage_name = gui.add_markdown("")
         self._pole_folder = gui.add_folder("pole")

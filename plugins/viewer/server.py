@@ -78,4 +78,5 @@ class Viewer:
     def close(self) -> None:
         """Stop serving and playing."""
         self._pose.close()
-        self._server.stop()
+        with redirect_stdout(StringIO()):  # its farewell
+            self._server.stop()

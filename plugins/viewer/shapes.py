@@ -10,6 +10,7 @@ from limbik.core.rotation import Array
 _SIDES: Final = 10
 _SHOULDER: Final = 0.12  # where a bone is thickest, of its length
 _THIN: Final = 0.45  # its far end, of its thickest
+_OPPOSITE: Final = 1e-100  # sine of an angle that is half a turn about any axis
 
 
 @cache
@@ -68,8 +69,11 @@ def along(directions: Array) -> Array:
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     unit = np.where(length > 0.0, directions / np.where(length > 0.0, length, 1.0), (0.0, 0.0, 1.0))
     x, y, z = unit.T
-    turned = np.stack([1.0 + z, -y, x, np.zeros(len(unit))], 1)
-    turned[z < -1.0 + 1e-12] = (0.0, 1.0, 0.0, 0.0)
+    near = np.where(
+        z < 0.0, (x * x + y * y) / (1.0 + np.abs(z)), 1.0 + z
+    )  # 1 + z, to the last bits
+    turned = np.stack([near, -y, x, np.zeros(len(unit))], 1)
+    turned[np.abs(turned).max(1) < _OPPOSITE] = (0.0, 1.0, 0.0, 0.0)
     return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))
 
 

@@ -62,13 +62,13 @@ class ShowPanel:
             return self._page.act(change)
 
         add_control(gui, Control((line,), "bool"), line in SHOWN_AT_FIRST, show)
-        colour = gui.add_rgb("in", LINES[line])
 
-        @colour.on_update
-        def _(event: GuiEvent[Any]) -> None:
+        def paint(event: GuiEvent[Any]) -> None:
             with self._session.lock:
                 for drawing in self._page.drawings.values():
                     drawing.colour_line(line, event.target.value)
+
+        gui.add_rgb("in", LINES[line]).on_update(paint)
 
     def _set_limits(self, control: Control, value: Any) -> bool:
         for drawing in self._page.drawings.values():

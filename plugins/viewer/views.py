@@ -10,6 +10,7 @@ from limbik.core.rotation import Array
 
 _FLAT = 1e-9  # thickness over length
 _POSES = 16
+_FILLED = 0.8  # of the angle of view
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +65,11 @@ class Camera:
 def camera(points: Array, flat: Flat | None) -> Camera:
     """Return a camera that sees points, (m, 3): from the front right, or square to a plane."""
     low, high = points.min(0), points.max(0)
-    middle, size = (low + high) / 2.0, float(np.linalg.norm(high - low)) or 1.0
+    middle = (low + high) / 2.0
     field = 12.0 if flat else 40.0
     away = np.array([0.75, 0.35, 1.0]) if flat is None else flat.axes[:, 2]
-    distance = 0.47 * size / np.tan(np.radians(field) / 2.0)
-    return Camera(middle + away / np.linalg.norm(away) * distance, middle, field)
+    away /= np.linalg.norm(away)
+    before = (points - middle) @ away
+    aside = np.linalg.norm(points - middle - np.outer(before, away), axis=1)
+    distance = (aside / np.tan(np.radians(_FILLED * field) / 2.0) + before).max()
+    return Camera(middle + away * distance, middle, field)

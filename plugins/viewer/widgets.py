@@ -28,8 +28,7 @@ def add_control(gui: GuiApi, control: Control, value: Any, change: Change) -> An
         return None
     kept = [handle.value]
 
-    @handle.on_update
-    def _(event: GuiEvent[Any]) -> None:
+    def taken(event: GuiEvent[Any]) -> None:
         given = event.target.value
         if event.client is None:  # set by ourselves
             kept[0] = given
@@ -40,6 +39,7 @@ def add_control(gui: GuiApi, control: Control, value: Any, change: Change) -> An
         else:
             event.target.value = kept[0]
 
+    handle.on_update(taken)
     return handle
 
 

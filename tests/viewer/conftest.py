@@ -1,0 +1,24 @@
+"""Sessions of the scenes limbik ships."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from limbik.core.registry import Registry
+from limbik.core.scene import read_scene
+from limbik.plugins.viewer.session import Session
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+Opened = Callable[[str], Session]
+
+
+@pytest.fixture(scope="session")
+def registry() -> Registry:
+    return Registry()
+
+
+@pytest.fixture
+def opened(registry: Registry) -> Opened:
+    """Open one of the shipped scenes by its name."""
+    return lambda name: Session(read_scene(CONFIGS / f"{name}.yaml", registry), registry)

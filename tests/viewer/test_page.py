@@ -1,0 +1,154 @@
+"""The page without a browser: what a client sends over the wire moves the chain, or is refused."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from limbik.plugins.viewer.axes import to_page
+from limbik.plugins.viewer.session import LAST
+
+viser = pytest.importorskip("viser", reason="the extra 'view' is not installed")
+websockets = pytest.importorskip("websockets.sync.client")
+msgspec = pytest.importorskip("msgspec")
+
+from viser import _messages as wire  # noqa: E402 - after it is known to be there
+
+from limbik.plugins.viewer.server import Viewer  # noqa: E402
+
+PATIENCE = 20.0  # [s]
+
+
+class Client:
+    """Somebody who speaks to the page's server as the browser does."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self.viewer = viewer
+        self._line = websockets.connect(
+            viewer.url.replace("http", "ws"),
+            subprotocols=[f"viser-v{viser.__version__}"],
+            max_size=None,
+        )
+        self._line.recv(timeout=PATIENCE)
+        still, ahead = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        up = (0.0, 1.0, 0.0)
+        seen = wire.ViewerCameraMessage(still, up, 0.7, 0.1, 100.0, 600, 800, ahead, up)
+        self.send(seen)  # only who has told what it sees is a client
+        until(lambda: bool(viewer.page.server.get_clients()))
+
+    def send(self, message: Any) -> None:
+        self._line.send(msgspec.msgpack.encode(message.as_serializable_dict()))
+
+    def drag(self, gizmo: str, place: Any, over: bool = False) -> None:
+        """Send a place in the page's axes."""
+        x, y, z = map(float, place)
+        self.send(wire.TransformControlsUpdateMessage(gizmo, (1.0, 0.0, 0.0, 0.0), (x, y, z)))
+        if over:
+            self.send(wire.TransformControlsDragEndMessage(gizmo))
+
+    def set(self, label: str, value: Any) -> None:
+        """Set the widget with a label."""
+        self.send(wire.GuiUpdateMessage(self.widget(label)._impl.uuid, {"value": value}))
+
+    def widget(self, label: str) -> Any:
+        known = self.viewer.page.server.gui._gui_input_handle_from_uuid.values()
+        return next(handle for handle in known if getattr(handle, "label", "") == label)
+
+    def close(self) -> None:
+        self._line.close()
+
+
+@pytest.fixture
+def visit(opened) -> Iterator[Callable[[str], Client]]:
+    """Open a shipped scene and connect to it."""
+    clients: list[Client] = []
+
+    def visit(name: str) -> Client:
+        clients.append(Client(Viewer(opened(name), port=0)))
+        return clients[-1]
+
+    yield visit
+    for client in clients:
+        client.close()
+        client.viewer.close()
+
+
+def until(true: Callable[[], bool]) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + PATIENCE
+    while not true():
+        assert time.monotonic() < end, "it never came about"
+        time.sleep(0.01)
+
+
+def drawn(client: Client, name: str) -> np.ndarray:
+    """Where the page has the joints, in limbik's axes."""
+    return to_page(client.viewer.page.drawings[name].limb._joints.batched_positions)
+
+
+def test_a_drag_moves_the_end_there_and_a_nan_does_not(visit) -> None:
+    client = visit("arm")
+    session = client.viewer.page.session
+    goal = np.array([12.0, 130.0, 35.0])
+    client.drag("/arm-goal", to_page(goal), over=True)
+    until(lambda: bool(np.allclose(session.chain.goal, goal)))
+    until(lambda: bool(np.allclose(drawn(client, "arm")[-1], goal, atol=0.02)))
+    client.drag("/arm-goal", (math.nan, 1.0, 2.0))
+    client.drag("/arm-goal", (1.0, math.inf, 2.0), over=True)
+    handle = client.viewer.page.goals["arm"]._handle
+    until(lambda: bool(np.allclose(handle.position, to_page(goal))))
+    np.testing.assert_allclose(session.chain.goal, goal)
+    assert np.isfinite(drawn(client, "arm")).all()
+
+
+def test_a_burst_of_drags_ends_with_the_last(visit) -> None:
+    client = visit("arm")
+    start = client.viewer.page.session.chain.goal.copy()
+    for step in range(100):
+        client.drag("/arm-goal", to_page(start + [0.0, -0.2 * step, 0.0]))
+    client.drag("/arm-goal", to_page(start + [0.0, -25.0, 0.0]), over=True)
+    until(lambda: bool(np.allclose(drawn(client, "arm")[-1], start + [0.0, -25.0, 0.0], atol=0.02)))
+
+
+def test_the_pole_drags_the_knee(visit) -> None:
+    client = visit("leg-pole")
+    before = drawn(client, "leg-pole")[1]
+    client.drag("/leg-pole-pole", to_page([60.0, 50.0, 0.0]), over=True)
+    until(lambda: drawn(client, "leg-pole")[1][0] > before[0] + 3.0)
+
+
+def test_widgets_change_strategy_option_and_stage(visit) -> None:
+    client = visit("arm")
+    page = client.viewer.page
+    client.set("tolerance", 0.5)
+    until(lambda: page.session.chain.setup.settings.tolerance == 0.5)
+    client.set("tolerance", -1.0)
+    until(lambda: "tolerance" in page._error)
+    assert page.session.chain.setup.settings.tolerance == 0.5
+    until(lambda: client.widget("tolerance").value == 0.5)
+    client.set("stage", 0)
+    until(lambda: page.session.stage == 0)
+    rest = page.session.chain.setup.chain
+    assert len(drawn(client, "arm")) == len(rest)
+    client.set("stage", client.widget("stage").max)
+    until(lambda: page.session.stage == LAST)
+
+
+def test_the_server_listens_on_this_machine_only_and_shares_nothing(visit) -> None:
+    viewer = visit("arm").viewer
+    assert viewer.url.startswith("http://127.0.0.1:")
+    assert viewer.page.server.get_host() == "127.0.0.1"
+    assert viewer.page.server._share_tunnel is None
+
+
+def test_a_taken_port_is_passed_over_and_the_one_in_use_is_told(visit, opened) -> None:
+    first = visit("arm").viewer
+    taken = int(first.url.rsplit(":", 1)[1])
+    second = Viewer(opened("arm"), port=taken)
+    try:
+        assert int(second.url.rsplit(":", 1)[1]) != taken
+    finally:
+        second.close()
