@@ -69,9 +69,7 @@ def along(directions: Array) -> Array:
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     unit = np.where(length > 0.0, directions / np.where(length > 0.0, length, 1.0), (0.0, 0.0, 1.0))
     x, y, z = unit.T
-    near = np.where(
-        z < 0.0, (x * x + y * y) / (1.0 + np.abs(z)), 1.0 + z
-    )  # 1 + z, to the last bits
+    near = np.where(z < 0.0, (x * x + y * y) / (1.0 + np.abs(z)), 1.0 + z)
     turned = np.stack([near, -y, x, np.zeros(len(unit))], 1)
     turned[np.abs(turned).max(1) < _OPPOSITE] = (0.0, 1.0, 0.0, 0.0)
     return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from viser import ViserServer
 
+from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.plugins.viewer.axes import frame_to_page, to_page
 from limbik.plugins.viewer.drawing import line_colours
@@ -53,10 +54,11 @@ def set_stage(server: ViserServer, session: Session, shown: dict[str, Shown]) ->
 
 def seen_points(session: Session, shown: dict[str, Shown]) -> Array:
     """Return what the camera shall see, (m, 3) [length]."""
-    parts = [session.path.goals]
+    parts = [session.path.goals] if session.follow else []
     for name, one in shown.items():
         chained = session.chains[name]
-        parts += [one.positions, chained.goal[None]]
+        chain = one.solution.chain
+        parts += [one.positions, forward_kinematics(chain, chain.rest)[0], chained.goal[None]]
         if chained.setup.in_plane:
             parts.append(np.array([chained.setup.pole.position]))
     return np.concatenate(parts)

@@ -1,16 +1,11 @@
 """Sessions of the scenes limbik ships."""
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.plugins.viewer.session import Session
-
-CONFIGS = Path(__file__).parents[2] / "configs"
-Opened = Callable[[str], Session]
+from limbik.tests.viewer.scenes import CONFIGS, Opened
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,7 @@ import pytest
 
 from limbik.plugins.viewer.axes import from_page, to_page
 from limbik.plugins.viewer.session import LAST
+from limbik.tests.viewer.scenes import Opened
 
 playwright = pytest.importorskip("playwright.sync_api", reason="the extra 'browser' is missing")
 pytest.importorskip("viser", reason="the extra 'view' is not installed")
@@ -115,8 +116,11 @@ class Visit:
         self.page.screenshot(path=path)
 
 
+Visiting = Callable[[str], Visit]
+
+
 @pytest.fixture
-def visit(opened) -> Iterator[Callable[[str], Visit]]:
+def visit(opened: Opened) -> Iterator[Visiting]:
     with playwright.sync_playwright() as play:
         browser = play.chromium.launch(executable_path=CHROMIUM)
         viewers = []
@@ -131,7 +135,7 @@ def visit(opened) -> Iterator[Callable[[str], Visit]]:
             viewer.close()
 
 
-def test_a_person_drags_switches_and_looks_at_stages(visit, tmp_path: Path) -> None:
+def test_a_person_drags_switches_and_looks_at_stages(visit: Visiting, tmp_path: Path) -> None:
     seen = visit("arm")
     session = seen.session
 
@@ -166,7 +170,7 @@ def test_a_person_drags_switches_and_looks_at_stages(visit, tmp_path: Path) -> N
     assert seen.outside == []
 
 
-def test_scene_and_picture_can_be_taken_away(visit, tmp_path: Path) -> None:
+def test_scene_and_picture_can_be_taken_away(visit: Visiting, tmp_path: Path) -> None:
     seen = visit("leg-pole")
     seen.tab("Show")
     for button, ending in (("save as scene", "yaml"), ("save picture", "png")):

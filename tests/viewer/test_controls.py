@@ -49,7 +49,7 @@ class Colour(IntEnum):
 
 class Params(NamedTuple):
     share: Annotated[float, Field(ge=0.0, le=1.0, description="how much")] = 0.5
-    count: int = 3
+    rounds: int = 3
     on: bool = False
     colour: Colour = Colour.RED
     way: tuple[float, float, float] = (0.0, 0.0, 1.0)
@@ -58,7 +58,7 @@ class Params(NamedTuple):
 def test_all_kinds_of_parameters_a_plugin_may_have_get_controls() -> None:
     assert controls(model(Params)) == [
         Control(("share",), "float", 0.0, 1.0, text="how much"),
-        Control(("count",), "int"),
+        Control(("rounds",), "int"),
         Control(("on",), "bool"),
         Control(("colour",), "choice", choices=("red", "dark-blue")),
         Control(("way",), "vector", size=3),

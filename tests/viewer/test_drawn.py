@@ -17,6 +17,7 @@ from limbik.plugins.viewer.axes import (
 )
 from limbik.plugins.viewer.shapes import along, ball, bone, cone
 from limbik.plugins.viewer.views import camera
+from limbik.tests.viewer.scenes import Opened
 
 numbers = st.floats(-1e6, 1e6)
 points = st.tuples(numbers, numbers, numbers)
@@ -71,7 +72,7 @@ def test_a_cones_rim_is_at_its_angle() -> None:
 
 
 @pytest.mark.parametrize("name", ["arm", "leg", "leg-pole", "finger", "planar"])
-def test_a_hand_lies_on_its_arc(opened, name: str) -> None:
+def test_a_hand_lies_on_its_arc(opened: Opened, name: str) -> None:
     """The pointer of a joint inside its range touches the arc that range draws."""
     session = opened(name)
     shown = next(iter(session.solve().values()))
@@ -85,7 +86,7 @@ def test_a_hand_lies_on_its_arc(opened, name: str) -> None:
         np.testing.assert_allclose(arc.lines[-1, 0], arc.hand[0])
 
 
-def test_arcs_are_marked_where_the_joint_rests_on_an_end(opened) -> None:
+def test_arcs_are_marked_where_the_joint_rests_on_an_end(opened: Opened) -> None:
     session = opened("arm")
     session.move_goal("arm", np.array([18.0, 143.0, -60.0]))
     shown = next(iter(session.solve().values()))
@@ -95,14 +96,15 @@ def test_arcs_are_marked_where_the_joint_rests_on_an_end(opened) -> None:
     assert sorted(marked) == sorted(text.rsplit(" ", 1)[1] for text in touched)
 
 
-def test_the_plane_of_a_flat_scene_looks_right_handed_to_the_eye(opened) -> None:
+def test_the_plane_of_a_flat_scene_looks_right_handed_to_the_eye(opened: Opened) -> None:
     flat = opened("planar").flat
+    assert flat is not None
     right, up, toward = to_page(flat.axes.T)
     np.testing.assert_allclose(np.cross(right, up), toward, atol=1e-12)
     np.testing.assert_allclose(to_matrix(frame_to_page(flat.axes))[:, 2], toward, atol=1e-12)
 
 
-def test_the_camera_sees_all_points(opened) -> None:
+def test_the_camera_sees_all_points(opened: Opened) -> None:
     shown = next(iter(opened("arm").solve().values()))
     view = camera(shown.positions, None)
     ahead = view.look_at - view.position

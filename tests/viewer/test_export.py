@@ -1,20 +1,18 @@
 """A saved scene reads back and solves to the same pose."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
+from limbik.core.registry import Registry
 from limbik.core.scene import scene_from
 from limbik.core.solving import solve_scene
 from limbik.core.yamlfile import read_yaml
 from limbik.plugins.viewer.export import scene_text
 from limbik.plugins.viewer.session import Session
+from limbik.tests.viewer.scenes import CONFIGS, Opened
 
-CONFIGS = Path(__file__).parents[2] / "configs"
 
-
-def again(session: Session, registry) -> np.ndarray:
+def again(session: Session, registry: Registry) -> np.ndarray:
     """Angles of the scene that a session saves, solved anew."""
     document = read_yaml(scene_text(session), "saved.yaml")
     scene = scene_from(document, CONFIGS, registry)
@@ -22,7 +20,7 @@ def again(session: Session, registry) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ["arm", "leg-pole", "planar", "weld", "arm7", "spine"])
-def test_a_scene_as_it_was_opened(opened, registry, name: str) -> None:
+def test_a_scene_as_it_was_opened(opened: Opened, registry: Registry, name: str) -> None:
     session = opened(name)
     session.follow = False
     session.move_goal(name, session.chain.goal * 1.01)
@@ -30,7 +28,7 @@ def test_a_scene_as_it_was_opened(opened, registry, name: str) -> None:
     np.testing.assert_array_equal(again(session, registry), shown.angles)
 
 
-def test_a_scene_with_everything_changed(opened, registry) -> None:
+def test_a_scene_with_everything_changed(opened: Opened, registry: Registry) -> None:
     session = opened("arm")
     setup = session.chain.setup
     for path, value in {
@@ -48,7 +46,7 @@ def test_a_scene_with_everything_changed(opened, registry) -> None:
     np.testing.assert_allclose(again(session, registry), shown.angles, atol=1e-12)
 
 
-def test_another_solver_with_a_turned_pole(opened, registry) -> None:
+def test_another_solver_with_a_turned_pole(opened: Opened, registry: Registry) -> None:
     session = opened("arm")
     setup = session.chain.setup.with_strategy("solver", {"use": "2d"})
     setup = setup.with_pole(np.array([40.0, 100.0, -30.0])).with_rotor(

@@ -10,6 +10,7 @@ import pytest
 
 from limbik.plugins.viewer.axes import to_page
 from limbik.plugins.viewer.session import LAST
+from limbik.tests.viewer.scenes import Opened
 
 viser = pytest.importorskip("viser", reason="the extra 'view' is not installed")
 websockets = pytest.importorskip("websockets.sync.client")
@@ -61,8 +62,11 @@ class Client:
         self._line.close()
 
 
+Visiting = Callable[[str], Client]
+
+
 @pytest.fixture
-def visit(opened) -> Iterator[Callable[[str], Client]]:
+def visit(opened: Opened) -> Iterator[Visiting]:
     """Open a shipped scene and connect to it."""
     clients: list[Client] = []
 
@@ -89,7 +93,7 @@ def drawn(client: Client, name: str) -> np.ndarray:
     return to_page(client.viewer.page.drawings[name].limb._joints.batched_positions)
 
 
-def test_a_drag_moves_the_end_there_and_a_nan_does_not(visit) -> None:
+def test_a_drag_moves_the_end_there_and_a_nan_does_not(visit: Visiting) -> None:
     client = visit("arm")
     session = client.viewer.page.session
     goal = np.array([12.0, 130.0, 35.0])
@@ -104,23 +108,24 @@ def test_a_drag_moves_the_end_there_and_a_nan_does_not(visit) -> None:
     assert np.isfinite(drawn(client, "arm")).all()
 
 
-def test_a_burst_of_drags_ends_with_the_last(visit) -> None:
+def test_a_burst_of_drags_ends_with_the_last(visit: Visiting) -> None:
     client = visit("arm")
     start = client.viewer.page.session.chain.goal.copy()
+    down, last = np.array([0.0, -0.2, 0.0]), start - np.array([0.0, 25.0, 0.0])
     for step in range(100):
-        client.drag("/arm-goal", to_page(start + [0.0, -0.2 * step, 0.0]))
-    client.drag("/arm-goal", to_page(start + [0.0, -25.0, 0.0]), over=True)
-    until(lambda: bool(np.allclose(drawn(client, "arm")[-1], start + [0.0, -25.0, 0.0], atol=0.02)))
+        client.drag("/arm-goal", to_page(start + step * down))
+    client.drag("/arm-goal", to_page(last), over=True)
+    until(lambda: bool(np.allclose(drawn(client, "arm")[-1], last, atol=0.02)))
 
 
-def test_the_pole_drags_the_knee(visit) -> None:
+def test_the_pole_drags_the_knee(visit: Visiting) -> None:
     client = visit("leg-pole")
     before = drawn(client, "leg-pole")[1]
     client.drag("/leg-pole-pole", to_page([60.0, 50.0, 0.0]), over=True)
     until(lambda: drawn(client, "leg-pole")[1][0] > before[0] + 3.0)
 
 
-def test_widgets_change_strategy_option_and_stage(visit) -> None:
+def test_widgets_change_strategy_option_and_stage(visit: Visiting) -> None:
     client = visit("arm")
     page = client.viewer.page
     client.set("tolerance", 0.5)
@@ -137,14 +142,14 @@ def test_widgets_change_strategy_option_and_stage(visit) -> None:
     until(lambda: page.session.stage == LAST)
 
 
-def test_the_server_listens_on_this_machine_only_and_shares_nothing(visit) -> None:
+def test_the_server_listens_on_this_machine_only_and_shares_nothing(visit: Visiting) -> None:
     viewer = visit("arm").viewer
     assert viewer.url.startswith("http://127.0.0.1:")
     assert viewer.page.server.get_host() == "127.0.0.1"
     assert viewer.page.server._share_tunnel is None
 
 
-def test_a_taken_port_is_passed_over_and_the_one_in_use_is_told(visit, opened) -> None:
+def test_a_taken_port_is_passed_over(visit: Visiting, opened: Opened) -> None:
     first = visit("arm").viewer
     taken = int(first.url.rsplit(":", 1)[1])
     second = Viewer(opened("arm"), port=taken)

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from limbik.core.errors import InputError, LimbikError
+from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
+from limbik.core.solution2d import PlanarSolution
 from limbik.core.solving import solve_scene
 from limbik.plugins.viewer.session import LAST, Session, Shown
+from limbik.tests.viewer.scenes import Opened
 
 
 def only(session: Session, stages: bool = False) -> Shown:
@@ -17,13 +20,13 @@ def only(session: Session, stages: bool = False) -> Shown:
     return shown
 
 
-def test_a_session_begins_where_the_command_line_does(opened) -> None:
+def test_a_session_begins_where_the_command_line_does(opened: Opened) -> None:
     session = opened("arm")
     first = solve_scene(session.chain.setup.given)[0]
     np.testing.assert_array_equal(only(session).angles, first.angles)
 
 
-def test_the_end_follows_the_goal(opened) -> None:
+def test_the_end_follows_the_goal(opened: Opened) -> None:
     session = opened("arm")
     goal = session.chain.goal + np.array([3.0, -8.0, 12.0])
     session.move_goal("arm", goal)
@@ -32,7 +35,7 @@ def test_the_end_follows_the_goal(opened) -> None:
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, 1e200])
-def test_a_goal_that_is_no_place_is_refused_and_the_old_one_stays(opened, bad: float) -> None:
+def test_a_goal_that_is_no_place_is_refused(opened: Opened, bad: float) -> None:
     session = opened("arm")
     before = session.chain.goal.copy()
     with pytest.raises(InputError):
@@ -41,7 +44,7 @@ def test_a_goal_that_is_no_place_is_refused_and_the_old_one_stays(opened, bad: f
     assert np.isfinite(only(session).positions).all()
 
 
-def test_the_stages_are_those_of_the_trace(opened) -> None:
+def test_the_stages_are_those_of_the_trace(opened: Opened) -> None:
     session = opened("arm")
     stages = only(session, stages=True).stages
     assert stages[:4] == ("initial", "aim", "bend", "round 1")
@@ -55,7 +58,7 @@ def test_the_stages_are_those_of_the_trace(opened) -> None:
     np.testing.assert_array_equal(shown.positions, traced[2].positions)
 
 
-def test_a_stage_past_the_last_is_the_finished_pose(opened) -> None:
+def test_a_stage_past_the_last_is_the_finished_pose(opened: Opened) -> None:
     session = opened("arm")
     done = only(session)
     session.stage = 999
@@ -64,7 +67,7 @@ def test_a_stage_past_the_last_is_the_finished_pose(opened) -> None:
     np.testing.assert_array_equal(shown.angles, done.angles)
 
 
-def test_a_change_that_cannot_be_solved_leaves_everything_as_it_was(opened) -> None:
+def test_a_change_that_cannot_be_solved_leaves_everything_as_it_was(opened: Opened) -> None:
     session = opened("planar")
     setup = session.chain.setup
     with pytest.raises(LimbikError):
@@ -72,14 +75,14 @@ def test_a_change_that_cannot_be_solved_leaves_everything_as_it_was(opened) -> N
     assert session.chain.setup is setup
 
 
-def test_a_flat_scene_keeps_its_goal_in_the_plane(opened) -> None:
+def test_a_flat_scene_keeps_its_goal_in_the_plane(opened: Opened) -> None:
     session = opened("planar")
     session.move_goal("planar", np.array([0.7, 1.5, 1.0]))
     np.testing.assert_allclose(session.chain.goal, [0.0, 1.5, 1.0], atol=1e-12)
     assert opened("arm").flat is None
 
 
-def test_frames_of_a_followed_path_are_what_solving_it_in_order_gives(opened) -> None:
+def test_frames_of_a_followed_path_are_what_solving_it_in_order_gives(opened: Opened) -> None:
     session = opened("scenarios/circle-from-rest")
     assert session.follow == session.chain.setup.given.follow
     session.follow = True
@@ -90,7 +93,7 @@ def test_frames_of_a_followed_path_are_what_solving_it_in_order_gives(opened) ->
         np.testing.assert_array_equal(only(session).angles, whole[frame].angles)
 
 
-def test_a_changed_option_is_used_for_the_past_of_a_path_too(opened) -> None:
+def test_a_changed_option_is_used_for_the_past_of_a_path_too(opened: Opened) -> None:
     session = opened("scenarios/circle-from-rest")
     session.follow = True
     session.go_to(20)
@@ -103,7 +106,7 @@ def test_a_changed_option_is_used_for_the_past_of_a_path_too(opened) -> None:
     np.testing.assert_array_equal(past.angles, whole[19].angles)
 
 
-def test_a_path_plays_in_its_own_time_and_begins_again(opened) -> None:
+def test_a_path_plays_in_its_own_time_and_begins_again(opened: Opened) -> None:
     session = opened("scenarios/circle-from-rest")
     session.advance(0.5)
     assert session.path.times[session.frame] == pytest.approx(0.5, abs=1 / 30)
@@ -111,7 +114,7 @@ def test_a_path_plays_in_its_own_time_and_begins_again(opened) -> None:
     assert session.frame == 0
 
 
-def test_a_planned_trajectory_is_the_path(opened) -> None:
+def test_a_planned_trajectory_is_the_path(opened: Opened) -> None:
     pytest.importorskip("scipy")
     session = opened("weld")
     assert len(session.path) > 1000
@@ -121,7 +124,7 @@ def test_a_planned_trajectory_is_the_path(opened) -> None:
     assert only(session).solution.reached
 
 
-def test_two_solvers_share_the_goal(opened) -> None:
+def test_two_solvers_share_the_goal(opened: Opened) -> None:
     session = opened("planar")
     session.compare("article-ccd")
     other = session.compared()
@@ -132,7 +135,7 @@ def test_two_solvers_share_the_goal(opened) -> None:
     assert session.compared() is None
 
 
-def test_ik_and_fk_component_are_the_two_ends_of_the_mix(opened) -> None:
+def test_ik_and_fk_component_are_the_two_ends_of_the_mix(opened: Opened) -> None:
     session = opened("arm")
     setup = session.chain.setup.with_fk(1, np.radians([0.0, 40.0, 0.0]))
     session.change("arm", setup.with_option(("fk_mix",), 0.5))
@@ -144,15 +147,19 @@ def test_ik_and_fk_component_are_the_two_ends_of_the_mix(opened) -> None:
     np.testing.assert_array_equal(parts["FK"], only(session).positions)
 
 
-def test_a_goals_turn_moves_the_rotor(opened) -> None:
+def test_a_goals_turn_moves_the_rotor(opened: Opened) -> None:
     session = opened("leg-pole")
-    before = only(session).solution.rotor
+    before = only(session).solution
     session.turn_goal("leg-pole", np.radians([-40.0, 0.0, 0.0]))
-    assert np.abs(only(session).solution.rotor - before).max() > 0.1
+    after = only(session).solution
+    assert isinstance(before, PlanarSolution)
+    assert isinstance(after, PlanarSolution)
+    assert before.rotor is not None
+    assert after.rotor is not None
+    assert np.abs(after.rotor - before.rotor).max() > 0.1
 
 
-def test_reading_gives_the_same_whatever_the_order_of_drags(opened, registry) -> None:
-    """Without `follow` a solve has no past."""
+def test_without_follow_a_solve_has_no_past(opened: Opened, registry: Registry) -> None:
     session = opened("arm")
     goals = read_scene(session.chain.setup.given.document.name, registry).goals
     for goal in goals[::-1]:

@@ -12,14 +12,15 @@ from limbik.core.errors import InputError, LimbikError
 from limbik.core.registry import Registry
 from limbik.plugins.viewer.session import Session
 from limbik.plugins.viewer.setup import Setup
+from limbik.tests.viewer.scenes import Opened
 
 
 @pytest.fixture
-def arm(opened) -> Setup:
+def arm(opened: Opened) -> Setup:
     return opened("arm").chain.setup
 
 
-def test_a_changed_option_changes_the_solve_and_leaves_the_rest(arm: Setup, opened) -> None:
+def test_a_changed_option_changes_the_solve_and_leaves_the_rest(arm: Setup, opened: Opened) -> None:
     session: Session = opened("arm")
     changed = arm.with_option(("bend_vector",), {"use": "manual", "angle": 0.0})
     goal = session.chain.goal
@@ -64,7 +65,7 @@ def test_solvers_that_do_not_take_the_chain_are_named_with_their_reason(arm: Set
     assert why["lambda-leg"]
 
 
-def test_going_to_2d_and_back_keeps_the_options_of_3d(arm: Setup, opened) -> None:
+def test_going_to_2d_and_back_keeps_the_options_of_3d(arm: Setup, opened: Opened) -> None:
     goal = opened("arm").chain.goal
     flat = arm.with_strategy("solver", {"use": "2d"})
     assert flat.in_plane
@@ -74,7 +75,7 @@ def test_going_to_2d_and_back_keeps_the_options_of_3d(arm: Setup, opened) -> Non
     np.testing.assert_array_equal(back.solve(goal).angles, arm.solve(goal).angles)
 
 
-def test_the_default_pole_makes_a_plane(arm: Setup, opened) -> None:
+def test_the_default_pole_makes_a_plane(arm: Setup, opened: Opened) -> None:
     solution = arm.with_strategy("solver", {"use": "2d"}).solve(opened("arm").chain.goal)
     assert solution.remark == ""
 
