@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from viser import TransformControlsEvent, TransformControlsHandle, ViserServer
+from viser import TransformControlsEvent, ViserServer
 
 from limbik.core.rotation import Array
 from limbik.plugins.viewer.axes import (
@@ -48,7 +48,7 @@ class Gizmo:
         flat: Flat | None,
         moved: Moved,
     ) -> None:
-        self._server, self._name, self._size, self._flat = server, name, size, flat
+        self._size, self._flat = size, flat
         self._moved = moved
         self._place, self._turn = np.zeros(3), np.eye(3)
         self._ball = server.scene.add_mesh_simple(
@@ -57,24 +57,17 @@ class Gizmo:
         self._label = server.scene.add_label(f"{name}-label", text, anchor="bottom-center")
         self._rotates = False
         self._visible = True
-        self._handle = self._made()
-
-    def _made(self) -> TransformControlsHandle:
         far = (-FAR, FAR)
-        handle = self._server.scene.add_transform_controls(
-            self._name,
-            scale=self._size,
-            active_axes=(True, True, self._flat is None),
-            disable_rotations=not self._rotates,
+        self._handle = server.scene.add_transform_controls(
+            name,
+            scale=size,
+            active_axes=(True, True, flat is None),
+            disable_rotations=True,
             disable_sliders=True,
             depth_test=False,
             translation_limits=(far, far, far),
-            wxyz=self._wxyz(),
-            position=to_page(self._place),
-            visible=self._visible,
         )
-        handle.on_update(self._dragged)
-        return handle
+        self._handle.on_update(self._dragged)
 
     def _wxyz(self) -> Array:
         return turn_to_page(self._turn) if self._flat is None else frame_to_page(self._flat.axes)
@@ -108,10 +101,8 @@ class Gizmo:
 
     @rotates.setter
     def rotates(self, rotates: bool) -> None:
-        if rotates != self._rotates:
-            self._rotates = rotates
-            self._handle.remove()
-            self._handle = self._made()
+        self._rotates = rotates
+        self._handle.disable_rotations = not rotates
 
     @property
     def visible(self) -> bool:

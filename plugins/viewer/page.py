@@ -46,7 +46,7 @@ class Page:
     def __init__(self, server: ViserServer, session: Session) -> None:
         self.server, self.session = server, session
         self.apart = 0.6
-        self._error = ""
+        self._error, self._closed = "", False
         self._panels: list[Panel] = []
         shown = session.solve(stages=True)
         set_stage(server, session, shown)
@@ -107,6 +107,8 @@ class Page:
             Whether it was taken.
         """
         with self.session.lock:
+            if self._closed:
+                return False
             try:
                 change()
                 shown = self.session.solve(stages=not dragged)
@@ -117,6 +119,11 @@ class Page:
             self._error = ""
             self._show(shown, dragged)
             return True
+
+    def close(self) -> None:
+        """Take no changes any more: nobody is there to see them."""
+        with self.session.lock:
+            self._closed = True
 
     def _show(self, shown: dict[str, Shown], dragged: bool) -> None:
         with self.server.atomic():
@@ -170,5 +177,6 @@ def _goal_turn(turn: Array | None, shown: Shown) -> Array:
     if turn is not None and np.isfinite(turn).all():
         return hpb_to_matrix(turn)
     solution = shown.solution
-    rotor = solution.goal_rotation if isinstance(solution, PlanarSolution) else None
-    return shown.rotations[-1] if rotor is None else rotor
+    axes = solution.goal_rotation if isinstance(solution, PlanarSolution) else None
+    known = axes is not None and np.isfinite(axes).all()
+    return np.asarray(axes if known else shown.rotations[-1])

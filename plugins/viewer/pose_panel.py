@@ -10,7 +10,7 @@ from limbik.plugins.viewer.controls import Control, controls, value_at
 from limbik.plugins.viewer.page import Page
 from limbik.plugins.viewer.player import Player
 from limbik.plugins.viewer.session import LAST, Shown
-from limbik.plugins.viewer.widgets import add_control
+from limbik.plugins.viewer.widgets import Slider, add_control
 
 NO_ROTOR, OWN_ROTOR = "none", "own"
 
@@ -27,8 +27,8 @@ class PosePanel:
         gui, one = page.server.gui, self._session.chain
         place = Control(("goal",), "vector", size=3, text="where the end shall go, world")
         self._goal = add_control(gui, place, tuple(one.goal), self._set_goal)
-        self._stage: Any = gui.add_slider("stage", 0, 1, 1, 1, hint="poses of the solve")
-        self._stage.on_update(self._set_stage)
+        stage = gui.add_slider("stage", 0, 1, 1, 1, hint="poses of the solve, one by one")
+        self._stage = Slider(stage, self._set_stage)
         self._stage_name = gui.add_markdown("")
         self._pole_folder = gui.add_folder("pole")
         with self._pole_folder:
@@ -46,15 +46,14 @@ class PosePanel:
         page, session = self._page, self._session
         gui, path = page.server.gui, session.path
         self._player = Player(self._tick)
-        self._time: Any = None
+        self._time: Slider | None = None
         with gui.add_folder("path"):
             if path.note:
                 gui.add_markdown(path.note)
             if len(path) > 1:
-                self._time = gui.add_slider(
-                    "frame", 0, len(path) - 1, 1, 0, hint="goals of the scene, one after the other"
-                )
-                self._time.on_update(self._set_frame)
+                text = "goals of the scene, one after the other"
+                frame = gui.add_slider("frame", 0, len(path) - 1, 1, 0, hint=text)
+                self._time = Slider(frame, self._set_frame)
                 self._play = gui.add_checkbox("play", False)
                 self._play.on_update(self._set_play)
             self._name = gui.add_markdown("")
@@ -71,7 +70,7 @@ class PosePanel:
         if not dragged or seen.stages:
             self._show_stage(seen)
         if self._time is not None:
-            self._time.value = self._session.frame
+            self._time.show(self._session.frame)
         path = self._session.path
         self._name.content = (
             f"{path.names[self._session.frame]} · {path.times[self._session.frame]:.2f} s"
@@ -79,10 +78,9 @@ class PosePanel:
 
     def _show_stage(self, seen: Shown) -> None:
         last = max(len(seen.stages) - 1, 0)
-        self._stage.disabled = last == 0
-        self._stage.max = max(last, 1)
+        self._stage.handle.disabled = last == 0
         at = last if seen.stage == LAST else seen.stage
-        self._stage.value = at if last else 1
+        self._stage.show(at if last else 1, max(last, 1))
         self._stage_name.content = seen.stages[at] if seen.stages else "no stages to see"
 
     def _set_goal(self, control: Control, value: Any) -> bool:
@@ -128,19 +126,14 @@ class PosePanel:
         assert isinstance(rotor, PoleRotor)
         return self._set_rotor({**rotor.model_dump(), control.path[0]: value})
 
-    def _set_stage(self, event: GuiEvent[Any]) -> None:
-        if event.client is None:
-            return
-
+    def _set_stage(self, at: int) -> None:
         def change() -> None:
-            at = int(event.target.value)
-            self._session.stage = LAST if at >= self._stage.max else at
+            self._session.stage = LAST if at >= self._stage.handle.max else at
 
         self._page.act(change)
 
-    def _set_frame(self, event: GuiEvent[Any]) -> None:
-        if event.client is not None:
-            self._page.act(lambda: self._session.go_to(int(event.target.value)))
+    def _set_frame(self, frame: int) -> None:
+        self._page.act(lambda: self._session.go_to(frame))
 
     def _set_follow(self, control: Control, value: Any) -> bool:
         def change() -> None:

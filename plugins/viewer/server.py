@@ -78,5 +78,6 @@ class Viewer:
     def close(self) -> None:
         """Stop serving and playing."""
         self._pose.close()
+        self.page.close()
         with redirect_stdout(StringIO()):  # its farewell
             self._server.stop()

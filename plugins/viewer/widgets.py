@@ -43,6 +43,33 @@ def add_control(gui: GuiApi, control: Control, value: Any, change: Change) -> An
     return handle
 
 
+class Slider:
+    """A slider people drag while solves write to it: what they set last is never overwritten.
+
+    Args:
+        handle: viser's slider of whole numbers.
+        change: Called with what people set.
+    """
+
+    def __init__(self, handle: Any, change: Callable[[int], Any]) -> None:
+        self.handle, self._change = handle, change
+        self._known = int(handle.value)
+        handle.on_update(self._moved)
+
+    def _moved(self, event: GuiEvent[Any]) -> None:
+        if event.client is not None:
+            self._known = int(event.target.value)
+            self._change(self._known)
+
+    def show(self, value: int, last: int | None = None) -> None:
+        """Move it, unless it is there; `last` is a new end of its range."""
+        if last is not None:
+            self.handle.max = last
+        if value != self._known:
+            self._known = value
+            self.handle.value = value
+
+
 def _made(gui: GuiApi, control: Control, value: Any) -> Any:
     name, hint = control.name, control.text or None
     match control.kind:

@@ -125,6 +125,18 @@ def test_the_pole_drags_the_knee(visit: Visiting) -> None:
     until(lambda: drawn(client, "leg-pole")[1][0] > before[0] + 3.0)
 
 
+def test_every_goal_can_be_turned_also_one_that_says_nothing_of_it(visit: Visiting) -> None:
+    client = visit("leg-pole")
+    page = client.viewer.page
+    client.set("turn the goal", True)
+    handle = page.goals["leg-pole"]._handle
+    until(lambda: not handle.disable_rotations)
+    for frame, name in enumerate(page.session.path.names):
+        client.set("frame", frame)
+        until(lambda frame=frame: page.session.frame == frame)  # type: ignore[misc]
+        assert np.isfinite(handle.wxyz).all(), name
+
+
 def test_widgets_change_strategy_option_and_stage(visit: Visiting) -> None:
     client = visit("arm")
     page = client.viewer.page
