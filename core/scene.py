@@ -236,21 +236,35 @@ def _checkable(content: Any) -> Any:
 def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[Fault]:
     """Check each chosen strategy and its parameters against the registry."""
     for slot, choice in _choices(document.content):
-        if not isinstance(choice, str | dict):
-            continue
-        registry = registry or Registry()
-        try:
-            registry.bind(slot, choice)
-        except InputError as error:
-            for fault in error.faults:
-                key = "use" if fault.code == "unknown-strategy" else fault.key
-                place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
-                path = (*place, *_key_path(key))
-                at_key = fault.code == "unknown-key"
-                message = fault.message
-                if slot == SOLVER.name:
-                    message = message.replace("known: ", f"known: {', '.join(OWN_SOLVERS)}, ")
-                yield document.fault(fault.code, message, path, hint=fault.hint, at_key=at_key)
+        if isinstance(choice, str | dict):
+            registry = registry or Registry()
+            place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
+            yield from choice_faults(slot, choice, place, document, registry)
+
+
+def choice_faults(
+    slot: str, choice: str | dict[str, Any], place: KeyPath, document: Document, registry: Registry
+) -> Iterator[Fault]:
+    """Check a chosen strategy and its parameters against the registry.
+
+    Args:
+        slot: What the strategy is chosen for.
+        choice: Its name, or a mapping with the name under `use`.
+        place: Where in the document it is chosen.
+        document: Where it was read.
+        registry: Where strategies are looked up.
+    """
+    try:
+        registry.bind(slot, choice)
+    except InputError as error:
+        for fault in error.faults:
+            key = "use" if fault.code == "unknown-strategy" else fault.key
+            path = (*place, *_key_path(key))
+            at_key = fault.code == "unknown-key"
+            message = fault.message
+            if slot == SOLVER.name:
+                message = message.replace("known: ", f"known: {', '.join(OWN_SOLVERS)}, ")
+            yield document.fault(fault.code, message, path, hint=fault.hint, at_key=at_key)
 
 
 def _key_path(key: str) -> KeyPath:

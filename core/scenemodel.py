@@ -18,7 +18,7 @@ FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
-def _version(value: Any) -> Any:
+def version(value: Any) -> Any:
     """Refuse true, which Python takes for 1."""
     if isinstance(value, bool):
         message = "must be 1, not {found}"
@@ -174,7 +174,7 @@ class SceneModel(Model):
     """A whole scene file."""
 
     limbik: Annotated[
-        Literal[1], BeforeValidator(_version), Field(description="version of the format")
+        Literal[1], BeforeValidator(version), Field(description="version of the format")
     ]
     chain: ChainModel
     solver: Annotated[

@@ -30,12 +30,11 @@ def solve_scene(
         PluginError: A strategy failed.
     """
     if scene.solver is not None:
-        batch = prepare(scene.solver, scene.chain, scene.settings)
-        return list(_singles(batch(scene.goals, scene.follow)))
-    solver = scene_solver(scene, registry)
+        return list(_singles(solve_goals(scene, registry)))
     if not trace:
-        found = solve_part(solver, scene, slice(None))
+        found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]
+    solver = scene_solver(scene, registry)
     solutions: list[Solution] = []
     for row, goal in enumerate(scene.goals):
         before = solutions[-1].continuity if scene.follow and solutions else None
@@ -46,8 +45,34 @@ def solve_scene(
     return solutions
 
 
+def solve_goals(
+    scene: Scene, registry: Registry | None = None, threads: int | None = None
+) -> Solution:
+    """Solve every goal of a scene as `solve_scene` does, into one solution of arrays.
+
+    Args:
+        scene: The scene.
+        registry: Where the strategies are looked up; a new `Registry()` if absent.
+        threads: How many to use where goals do not follow; None for as many as there are cores.
+
+    Returns:
+        A solution with a leading goal axis.
+
+    Raises:
+        PluginError: A strategy failed.
+    """
+    if scene.solver is not None:
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        return batch(scene.goals, scene.follow)
+    return solve_part(scene_solver(scene, registry), scene, slice(None), threads=threads)
+
+
 def solve_part(
-    solver: Solver, scene: Scene, part: slice, continuity: Continuity | None = None
+    solver: Solver,
+    scene: Scene,
+    part: slice,
+    continuity: Continuity | None = None,
+    threads: int | None = None,
 ) -> Solution:
     """Solve some goals of a scene at once, as a path if the scene says so.
 
@@ -56,6 +81,7 @@ def solve_part(
         scene: The scene.
         part: Which goals.
         continuity: Of the goal before them on a path.
+        threads: As for `solve_goals`.
 
     Returns:
         A solution with a leading goal axis.
@@ -65,7 +91,7 @@ def solve_part(
         asked["goal_turns"] = scene.goal_turns[part]
     if scene.follow:
         return solver.follow(scene.goals[part], continuity=continuity, **asked)
-    return solver.solve_many(scene.goals[part], **asked)
+    return solver.solve_many(scene.goals[part], threads=threads, **asked)
 
 
 def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:

@@ -31,6 +31,7 @@ class Metric:
         unit: For people.
         meaning: One line.
         measure: Gives the value, or raises `NotJudged`.
+        on_path: Whether it says something only where the goals are a path.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Metric:
     unit: str
     meaning: str
     measure: Callable[[Run], float]
+    on_path: bool = False
 
 
 def _at(
@@ -71,14 +73,32 @@ METRICS: tuple[Metric, ...] = (
     Metric(
         "limit_error", "M2", "% L", "miss beyond the best of long solves", _times(100, limit_error)
     ),
-    Metric("gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains)),
-    Metric("gain", "M3", "rad/L", "largest of these", _at(100, gains)),
-    Metric("acceleration", "M4", "°/s²", "of a joint, largest", _at(100, accelerations, _DEG)),
-    Metric("acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG)),
-    Metric("pops", "M5", "", "turns that stand out from those around", pops),
-    Metric("flips", "M6", "", "jumps that no finer path removes", flips),
-    Metric("roughness", "M7", "", "log jerk of the middle joint less the goal's", roughness),
-    Metric("chatter", "M8", "1/s", "reversals of a limited axis", chatter),
+    Metric(
+        "gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains), on_path=True
+    ),
+    Metric("gain", "M3", "rad/L", "largest of these", _at(100, gains), on_path=True),
+    Metric(
+        "acceleration",
+        "M4",
+        "°/s²",
+        "of a joint, largest",
+        _at(100, accelerations, _DEG),
+        on_path=True,
+    ),
+    Metric(
+        "acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG), on_path=True
+    ),
+    Metric("pops", "M5", "", "turns that stand out from those around", pops, on_path=True),
+    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True),
+    Metric(
+        "roughness",
+        "M7",
+        "",
+        "log jerk of the middle joint less the goal's",
+        roughness,
+        on_path=True,
+    ),
+    Metric("chatter", "M8", "1/s", "reversals of a limited axis", chatter, on_path=True),
     Metric("limit_excess", "M9", "°", "beyond a limit", _times(_DEG, limit_excess)),
     Metric("history", "M10", "°", "pose change by the order of goals", _times(_DEG, history)),
     Metric("drift", "M11", "°", "first pose after the path, 1000 times", _times(_DEG, drift)),
@@ -90,7 +110,14 @@ METRICS: tuple[Metric, ...] = (
         "bend plane against a recorded one",
         _not_yet("a scene holds no recorded limb to compare with"),
     ),
-    Metric("plane_speed_p95", "M15", "°/s", "of the bend plane", _at(95, plane_speeds, _DEG)),
+    Metric(
+        "plane_speed_p95",
+        "M15",
+        "°/s",
+        "of the bend plane",
+        _at(95, plane_speeds, _DEG),
+        on_path=True,
+    ),
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
     Metric("mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour),
