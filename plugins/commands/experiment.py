@@ -50,7 +50,7 @@ def run(
     limbik experiment run bends.yaml --set sweep.smoothing=0.1,0.5 -o runs/smooth
     """
     with reported(as_json):
-        from limbik.plugins.experiments.overrides import read_override
+        from limbik.plugins.experiments.overrides import Override, read_override
         from limbik.plugins.experiments.read import read_experiment
         from limbik.plugins.experiments.run import prepare
         from limbik.plugins.experiments.run import run as run_prepared
@@ -58,8 +58,12 @@ def run(
         from limbik.plugins.output.records import to_json
 
         given = {"output": output, "engine": engine, "workers": workers}
-        options = [f"{key}={value}" for key, value in given.items() if value is not None]
-        overrides = [read_override(text) for text in (*(settings or ()), *options)]
+        overrides = [read_override(text) for text in settings or ()]
+        overrides += [
+            Override(f"--{key} {value}", (key,), value)
+            for key, value in given.items()
+            if value is not None
+        ]
         prepared = prepare(read_experiment(file, overrides))
         announce_compiling()
         if dry_run:
@@ -67,8 +71,12 @@ def run(
             typer.echo(to_json(record) if as_json else _expected_words(record))
             return
         total = sum(batch.solves for batch in prepared.batches)
-        with progress(total) as report:
-            outcome = run_prepared(prepared, new, report)
+        try:
+            with progress(total) as report:
+                outcome = run_prepared(prepared, new, report)
+        except KeyboardInterrupt:
+            typer.echo("limbik: finished parts stay; run it again to go on", err=True)
+            raise
         record = _finished(prepared, outcome)
         typer.echo(to_json(record) if as_json else _finished_words(record))
 

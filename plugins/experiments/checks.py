@@ -77,19 +77,21 @@ def ready_variants(
     scenes: Mapping[str, Scene],
     document: Document,
     registry: Registry,
-) -> tuple[dict[str, list[Ready]], list[Fault]]:
+) -> tuple[dict[str, list[Ready]], set[str], list[Fault]]:
     """Put every variant on every chain; what does not fit is a fault of its strategy.
 
     Returns:
-        Variants with scene and solver, by the chain's name; and the faults.
+        Variants with scene and solver, by the chain's name; the distributions of all plug-ins
+        that are used, but limbik's own; and the faults.
     """
     ready: dict[str, list[Ready]] = {}
+    distributions: set[str] = set()
     faults: dict[tuple[int, str], Fault] = {}
     for name, scene in scenes.items():
         ready[name] = []
         for variant in tried:
             try:
-                ready[name].append(_ready(variant, scene, document, registry))
+                ready[name].append(_ready(variant, scene, document, registry, distributions))
             except InputError as error:
                 place: KeyPath = ("strategies", variant.number)
                 for fault in error.faults:
@@ -97,21 +99,31 @@ def ready_variants(
                     message = f"'{variant.label}' on '{name}': {inner}{fault.message}"
                     made = document.fault(fault.code, message, place, hint=fault.hint)
                     faults.setdefault((variant.number, inner + fault.message), made)
-    return ready, list(faults.values())
+    return ready, distributions, list(faults.values())
 
 
-def _ready(variant: Variant, scene: Scene, document: Document, registry: Registry) -> Ready:
+def _ready(
+    variant: Variant,
+    scene: Scene,
+    document: Document,
+    registry: Registry,
+    distributions: set[str],
+) -> Ready:
+    """Put a variant on a chain, and note whose strategies it uses."""
     options = merged(scene.settings, variant.options)
     try:
         settings = Settings.model_validate(options)
     except ValidationError as error:
         alone = Document(document.name, options, {}, {})
         raise InputError(validation_faults(error, alone, Settings)) from None
-    bare, solver = scene_for(scene, variant, settings)
-    if solver is not None:
-        prepare(registry.bind(SOLVER.name, solver), bare.chain, settings)
+    bare, whole = scene_for(scene, variant, settings)
+    if whole is not None:
+        used = [registry.bind(SOLVER.name, whole)]
+        prepare(used[0], bare.chain, settings)
     elif variant.solver == "2d" and bare.pole is None:
         raise InputError(Fault("missing", "the 2D solver needs a scene with a pole"))
     else:
-        scene_solver(bare, registry)
-    return variant, bare, solver
+        used = list(scene_solver(bare, registry).strategies.values())
+    plugins = (bound.plugin for bound in used)
+    distributions |= {p.distribution for p in plugins if not p.built_in and p.distribution}
+    return variant, bare, whole

@@ -1,7 +1,7 @@
 """Where batches are solved: in this process, on all cores, or on a Dask cluster that is there."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,13 +18,16 @@ class WorkerLost(Exception):
     """A worker process was ended from outside; what it had not finished can be done again."""
 
 
-def run_jobs(engine: str, jobs: Iterable[Job], workers: int | None) -> Iterator[Part]:
+def run_jobs(
+    engine: str, jobs: Iterable[Job], workers: int | None, here: Mapping[str, str]
+) -> Iterator[Part]:
     """Solve jobs and give their parts as they are ready, in no order.
 
     Args:
         engine: `serial`, `local` or `dask://HOST:PORT`.
         jobs: What is to be solved; taken only as fast as it is.
         workers: Processes of the engine `local`; None for as many as there are cores.
+        here: Versions that a cluster's workers must have too.
 
     Raises:
         WorkerLost: A worker was killed.
@@ -35,7 +38,7 @@ def run_jobs(engine: str, jobs: Iterable[Job], workers: int | None) -> Iterator[
     elif engine == LOCAL:
         yield from _parallel(jobs, workers or os.cpu_count() or 1, backend="loky")
     else:
-        with _cluster(engine.removeprefix(DASK)) as count:
+        with _cluster(engine.removeprefix(DASK), here) as count:
             yield from _parallel(jobs, count)
 
 
@@ -67,7 +70,7 @@ def _guarded(job: Job, parent: int) -> Part:
 
 
 @contextmanager
-def _cluster(address: str) -> Iterator[int]:
+def _cluster(address: str, here: Mapping[str, str]) -> Iterator[int]:
     """Send joblib's work to a scheduler; gives the number of its threads.
 
     Raises:
@@ -87,7 +90,8 @@ def _cluster(address: str) -> Iterator[int]:
         message = f"no Dask scheduler answers at {address}; start one with 'dask scheduler'"
         raise EnvironmentProblem(message) from error
     try:
-        _check_versions(client.run(versions), address)
+        libraries = [name for name in here if name not in versions()]
+        _check_versions(client.run(versions, libraries), here, address)
         with parallel_config(backend="dask"):
             yield sum(client.nthreads().values())
     except KilledWorker as error:
@@ -100,12 +104,13 @@ def _cluster(address: str) -> Iterator[int]:
         client.close()
 
 
-def _check_versions(found: dict[str, dict[str, str]], address: str) -> None:
+def _check_versions(
+    found: Mapping[str, Mapping[str, str]], here: Mapping[str, str], address: str
+) -> None:
     """Refuse workers whose results might differ, and a cluster without any."""
     if not found:
         message = f"the scheduler at {address} has no workers; start some with 'dask worker'"
         raise EnvironmentProblem(message)
-    here = versions()
     lines = [
         f"{worker}: {name} {theirs.get(name)}, here {own}"
         for worker, theirs in found.items()

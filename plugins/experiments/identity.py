@@ -2,9 +2,9 @@
 
 import json
 import platform
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from hashlib import sha256
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
@@ -15,8 +15,8 @@ from limbik.core.scene import Scene
 from limbik.plugins.experiments.goalsets import Points
 from limbik.plugins.experiments.read import Experiment
 
-NOT_RESULTS = ("engine", "workers", "output", "name")
-"""Keys of an experiment that change nothing of its table."""
+NOT_RESULTS = ("engine", "workers", "output", "name", "chains")
+"""Keys of an experiment that change nothing of its table; the chains count as what they are."""
 _LIBRARIES = ("numpy", "numba", "llvmlite")
 
 
@@ -44,10 +44,21 @@ def _scene_contents(scene: Scene) -> dict[str, Any]:
     return {**content, "joints": _digest(*arrays)}
 
 
-def versions() -> dict[str, str]:
-    """Return the versions the results depend on."""
-    found = {name: version(name) for name in _LIBRARIES}
+def versions(distributions: Sequence[str] = ()) -> dict[str, str]:
+    """Return the versions the results depend on.
+
+    Args:
+        distributions: Those of plug-ins that are used.
+    """
+    found = {name: _version(name) for name in (*_LIBRARIES, *distributions)}
     return {"limbik": __version__, "python": platform.python_version(), **found}
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "missing"
 
 
 def fingerprint(content: dict[str, Any], of: dict[str, str]) -> str:

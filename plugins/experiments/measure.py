@@ -11,7 +11,7 @@ from limbik.core.scene import Scene
 from limbik.core.solution import Solution, Status
 from limbik.core.solving import scene_solver
 from limbik.plugins.experiments.trials import Trial
-from limbik.plugins.judging.catalogue import BY_NAME
+from limbik.plugins.judging.catalogue import BY_NAME, Metric
 from limbik.plugins.judging.run import NotJudged, Run
 
 PATH_COLUMNS = ("goals", "reached", "distance_p50", "distance_p95", "distance_max", "iterations")
@@ -43,28 +43,23 @@ def measured(
 ) -> dict[str, float]:
     """Return metrics by name; NaN where one says nothing about this goal set.
 
-    Measures of a motion say nothing about goals in no order, and a whole solver of a plug-in is
-    not measured: the measures solve again in ways only limbik's own solver knows.
+    Measures of a motion say nothing about goals in no order, and those that solve again know only
+    limbik's own solver, not one of a plug-in.
     """
-    if solution is None or scene.solver is not None:
+    if solution is None:
         return dict.fromkeys(metrics, nan)
-    goal_set = trial.goal_set
-    run = Run(
-        scene_solver(scene, registry),
-        scene.goals,
-        scene.fk_offsets,
-        goal_set.follow,
-        goal_set.rate,
-        solution,
-    )
-    return {name: _value(name, run, goal_set.is_path) for name in metrics}
+    # For a plug-in's solver it stands for chain and options alone.
+    solver = scene_solver(scene, registry)
+    goal_set, offsets = trial.goal_set, scene.fk_offsets
+    run = Run(solver, scene.goals, offsets, goal_set.follow, goal_set.rate, solution)
+    is_own = scene.solver is None
 
+    def value(metric: Metric) -> float:
+        if (metric.on_path and not goal_set.is_path) or (metric.again and not is_own):
+            return nan
+        try:
+            return metric.measure(run)
+        except (NotJudged, LimbikError):
+            return nan
 
-def _value(name: str, run: Run, is_path: bool) -> float:
-    metric = BY_NAME[name]
-    if metric.on_path and not is_path:
-        return nan
-    try:
-        return metric.measure(run)
-    except (NotJudged, LimbikError):
-        return nan
+    return {name: value(BY_NAME[name]) for name in metrics}

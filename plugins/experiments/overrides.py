@@ -17,7 +17,7 @@ class Override:
     """One value set on the command line.
 
     Attributes:
-        text: As it was given.
+        text: The option as it was given.
         path: Where it goes.
         value: A scalar, or a list of them.
     """
@@ -48,7 +48,7 @@ def read_override(text: str) -> Override:
         values = [plain_scalar(value.strip()) for value in given.split(",")]
     except ScalarFault as fault:
         raise InputError(Fault(fault.code, fault.message, f"--set {key}")) from None
-    return Override(text, path, values if len(values) > 1 else values[0])
+    return Override(f"--set {text}", path, values if len(values) > 1 else values[0])
 
 
 def apply(document: Document, overrides: Sequence[Override]) -> Document:
@@ -71,7 +71,7 @@ def _with(content: Any, override: Override, path: KeyPath) -> Any:
         if not isinstance(first, int) or first >= len(content):
             above = key_text(override.path[: len(override.path) - len(path)])
             message = f"{above} has the entries 0 to {len(content) - 1}, no '{first}'"
-            raise InputError(Fault("override", message, f"--set {override.text}"))
+            raise InputError(Fault("override", message, override.text))
         return [*content[:first], _with(content[first], override, rest), *content[first + 1 :]]
     mapping = content if isinstance(content, dict) else {}
     key = str(first)
@@ -85,7 +85,7 @@ def blame(faults: Sequence[Fault], overrides: Sequence[Override]) -> list[Fault]
         for override in overrides:
             key = key_text([str(p) if not isinstance(p, int) else p for p in override.path])
             if fault.key == key or fault.key.startswith((f"{key}.", f"{key}[")):
-                return replace(fault, file=f"--set {override.text}", line=0, column=0)
+                return replace(fault, file=override.text, line=0, column=0)
         return fault
 
     return [blamed(fault) for fault in faults]

@@ -4,11 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from math import isfinite
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from limbik.plugins.experiments.summary import AXES, CELLS, Row, Summary
+from limbik.core.rotation import Array
+from limbik.plugins.experiments.summary import AXES, Row, Summary, View
 from limbik.plugins.judging.catalogue import BY_NAME
 from limbik.plugins.output.compare import COLOURS
 from limbik.plugins.output.plot import FAINT, INK, LOOK, PAPER
@@ -18,7 +20,9 @@ if TYPE_CHECKING:
 
 MOST_BARS = 40
 MOST_MAPS = 12
-WIDE_NAME = 34  # characters
+WIDE_NAME = 52  # characters
+WIDE_TITLE = 32
+SEVERAL = 6.0  # goals in a cell of a map that say something about it
 
 
 @dataclass(frozen=True)
@@ -27,11 +31,13 @@ class Picture:
 
     Attributes:
         name: File name without ending.
+        group: The chain and the goal set it is about.
         title: What it shows.
         content: Bytes of a PNG file.
     """
 
     name: str
+    group: tuple[str, str]
     title: str
     content: bytes
 
@@ -48,11 +54,11 @@ def pictures(summary: Summary) -> list[Picture]:
                 continue
             name = "".join(c if c.isalnum() or c in "-_" else "-" for c in f"{chain}-{goals}")
             figure = _bars(solved, summary.metrics)
-            drawn.append(Picture(name, f"{chain}, {goals}: variants", _png(figure)))
+            drawn.append(Picture(name, (chain, goals), "the variants compared", _png(figure)))
             if not solved[0].is_path:
-                figure = _maps(solved, *summary.views[chain])
-                title = f"{chain}, {goals}: where goals were reached"
-                drawn.append(Picture(f"{name}-map", title, _png(figure)))
+                figure = _maps(solved, summary.views[chain, goals])
+                title = "where goals were reached"
+                drawn.append(Picture(f"{name}-map", (chain, goals), title, _png(figure)))
     return drawn
 
 
@@ -79,7 +85,7 @@ def best(rows: Sequence[Row], most: int) -> list[Row]:
 
 
 def _bars(rows: Sequence[Row], metrics: Sequence[str]) -> "Figure":
-    """One bar a variant in one panel for each number; what is longer is never better but once."""
+    """One bar a variant in one panel for each number; less is better in all but the first."""
     shown = best(rows, MOST_BARS)
     panels: list[tuple[str, Callable[[Row], float]]] = [
         ("reached [%]", lambda row: 100.0 * row.share),
@@ -104,8 +110,10 @@ def _bars(rows: Sequence[Row], metrics: Sequence[str]) -> "Figure":
         places = range(len(shown))
         axes.barh(places, values, 0.72, color=[colours[row.strategy] for row in shown])
         if index == 0:
-            _whiskers(axes, shown)
-        _numbers(axes, values, log=index == 1)
+            _scale_shares(axes, shown)
+        else:
+            _scale(axes, values)
+        _numbers(axes, [row.interval[1] * 100.0 for row in shown] if index == 0 else values, values)
         axes.set_title(title, fontsize=9, color=INK, loc="left")
         axes.set_yticks(places, names if index % columns == 0 else [])
         axes.set_ylim(len(shown) - 0.4, -0.6)
@@ -124,87 +132,110 @@ def _bars(rows: Sequence[Row], metrics: Sequence[str]) -> "Figure":
     return figure
 
 
-def _whiskers(axes: Any, rows: Sequence[Row]) -> None:
+def _scale_shares(axes: Any, rows: Sequence[Row]) -> None:
     """Draw the intervals of the shares, and leave out what all bars have in common."""
     for place, row in enumerate(rows):
         low, high = row.interval
         axes.plot([100.0 * low, 100.0 * high], [place, place], color=INK, lw=1.2)
     least = min(100.0 * row.interval[0] for row in rows)
-    axes.set_xlim(0.0 if least < 70.0 else 10.0 * np.floor(least / 10.0), 100.6)
+    start = 0.0 if least < 70.0 else 10.0 * np.floor(least / 10.0)
+    axes.set_xlim(start, 100.0 + 0.25 * (100.0 - start))
+    axes.set_xticks([tick for tick in axes.get_xticks() if start <= tick <= 100.0])
 
 
-def _numbers(axes: Any, values: Sequence[float], log: bool) -> None:
-    """Use a logarithmic scale where values differ by far, and write each value at its bar."""
+def _scale(axes: Any, values: Sequence[float]) -> None:
+    """Leave room for the numbers; use a logarithmic scale where values differ by far."""
     positive = [value for value in values if value > 0.0]
-    if log and positive and max(positive) > 50.0 * min(positive):
+    if not positive:
+        axes.set_xlim(0.0, 1.0)
+        axes.set_xticks([0.0])
+    elif max(positive) > 50.0 * min(positive):
+        low = 10.0 ** np.floor(np.log10(min(positive)) - 0.3)
         axes.set_xscale("log")
-        axes.set_xlim(10.0 ** np.floor(np.log10(min(positive)) - 0.3), max(positive) * 20.0)
-    elif axes.get_xlim()[0] == 0.0 and positive and max(positive) <= axes.get_xlim()[1]:
+        axes.set_xlim(low, max(positive) * (max(positive) / low) ** 0.35)
+        axes.minorticks_off()
+    else:
         axes.set_xlim(0.0, 1.28 * max(positive))
-    low, high = axes.get_xlim()
-    for place, value in enumerate(values):
-        if not isfinite(value):
-            axes.text(low, place, " –", va="center", fontsize=7.5, color=FAINT)
-            continue
-        inside = value > low + 0.82 * (high - low) and axes.get_xscale() == "linear"
+
+
+def _numbers(axes: Any, places: Sequence[float], values: Sequence[float]) -> None:
+    """Write each value behind its bar."""
+    low = axes.get_xlim()[0]
+    for row, (place, value) in enumerate(zip(places, values, strict=True)):
+        known = isfinite(value)
         axes.annotate(
-            f"{value:.3g}",
-            (max(value, low), place),
-            (-3.0 if inside else 3.0, 0.0),
+            _short(value) if known else "–",
+            (max(place, low) if known else low, row),
+            (3.0, 0.0),
             textcoords="offset points",
-            ha="right" if inside else "left",
             va="center",
             fontsize=7.5,
-            color=PAPER if inside else INK,
+            color=INK if known else FAINT,
         )
 
 
-def _maps(rows: Sequence[Row], order: tuple[int, int], low: Any, high: Any) -> "Figure":
+def _maps(rows: Sequence[Row], view: View) -> "Figure":
     """One map a variant: the share of the goals in each cell that were reached."""
     shown = best(rows, MOST_MAPS)
     columns = min(len(shown), 4)
     lines = -(-len(shown) // columns)
-    width, height = 2.5 * columns + 1.3, 2.75 * lines + 0.7
-    figure = _canvas(width, height)
-    extent = (low[0], high[0], low[1], high[1])
+    size = view.high - view.low
+    tall = 2.3 * min(float(size[1] / size[0]), 2.5)
+    width, height = 2.45 * columns + 1.3, (tall + 0.5) * lines + 0.5
+    figure = _canvas(max(width, 4.5), height)
+    extent = (view.low[0], view.high[0], view.low[1], view.high[1])
+    coarse = 1 if rows[0].steps else _coarseness(shown)
     image = None
     for index, row in enumerate(shown):
         axes: Any = figure.add_subplot(lines, columns, index + 1)
-        with np.errstate(invalid="ignore"):
-            share = np.where(row.map[0] > 0, 100.0 * row.map[1] / row.map[0], np.nan)
-        if 4 * np.isfinite(share).sum() < CELLS * CELLS and row.count < CELLS * CELLS // 2:
-            axes.set_facecolor("#f7f8f9")
+        goals, reached = (_pooled(layer, coarse) for layer in row.map)
+        share = np.divide(100.0 * reached, goals, out=np.full_like(goals, np.nan), where=goals > 0)
         image = axes.imshow(
-            share.T,
-            origin="lower",
-            extent=extent,
-            cmap="RdYlBu",
-            vmin=0.0,
-            vmax=100.0,
-            interpolation="nearest",
+            share.T, origin="lower", extent=extent, vmin=0.0, vmax=100.0, interpolation="nearest"
         )
-        axes.set_title(_cut(row.label), fontsize=8.5, color=INK)
+        axes.set_facecolor("#eef0f2")
+        axes.set_title(fill(row.label, WIDE_TITLE, max_lines=2), fontsize=8, color=INK, pad=3)
         axes.tick_params(length=0, labelsize=7)
-        if index % columns:
-            axes.set_yticklabels([])
-        if index + columns < len(shown):
-            axes.set_xticklabels([])
-    bar = figure.colorbar(image, ax=figure.axes, shrink=0.8, pad=0.02)  # type: ignore[arg-type]
-    bar.set_label("goals reached in a cell [%]", fontsize=8)
-    bar.ax.tick_params(labelsize=7)
-    note = (
-        f"{AXES[order[0]]} to the right, {AXES[order[1]]} up [length]; no colour: no goals there."
+        axes.tick_params(labelleft=index % columns == 0, labelbottom=index + columns >= len(shown))
+    figure.subplots_adjust(
+        0.5 / width, 0.62 / height, 1.0 - 0.95 / width, 1.0 - 0.4 / height, 0.06, 0.45 / tall
     )
+    bar_axes: Any = figure.add_axes((1.0 - 0.8 / width, 0.3, 0.12 / width, 0.5))
+    bar: Any = figure.colorbar(image, cax=bar_axes)  # type: ignore[arg-type]
+    bar.set_label("goals reached in a cell [%]", fontsize=7.5, color=INK)
+    bar.ax.tick_params(labelsize=7, length=0)
+    first, second = (AXES[axis] for axis in view.axes)
+    note = f"{first} to the right, {second} up [length]; grey: no goals."
     if len(shown) < len(rows):
         note += f" The best {len(shown)} of {len(rows)} variants."
-    figure.text(0.02, 0.1 / height, note, fontsize=7.5, color=FAINT)
+    figure.text(0.1 / width, 0.1 / height, note, fontsize=7.5, color=FAINT)
     return figure
+
+
+def _coarseness(rows: Sequence[Row]) -> int:
+    """How many cells to join along both axes so that most of those with goals have several."""
+    for coarse in (1, 2, 3):
+        goals = _pooled(rows[0].map[0], coarse)
+        if goals[goals > 0].mean() >= SEVERAL:
+            return coarse
+    return 4
+
+
+def _pooled(layer: Array, coarse: int) -> Array:
+    """Add up squares of cells."""
+    wide, tall = (size // coarse for size in layer.shape)
+    return np.asarray(layer.reshape(wide, coarse, tall, coarse).sum(axis=(1, 3)))
 
 
 def _colours(rows: Sequence[Row]) -> dict[str, str]:
     """Give each strategy a colour."""
     names = dict.fromkeys(row.strategy for row in rows)
     return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(names)}
+
+
+def _short(value: float) -> str:
+    """Write a number in three digits, or all before the point."""
+    return f"{value:.0f}" if 1000.0 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def _cut(text: str) -> str:

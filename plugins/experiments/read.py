@@ -46,12 +46,14 @@ class Experiment:
         model: What the file says, with all overrides.
         scenes: The scenes by the chains' names.
         trials: All trials, in the order of the file.
+        distributions: Packages of the plug-ins that are used, beside limbik.
     """
 
     name: str
     model: ExperimentModel
     scenes: dict[str, Scene]
     trials: list[Trial]
+    distributions: tuple[str, ...]
 
 
 def read_experiment(
@@ -98,7 +100,7 @@ def _experiment(document: Document, path: Path, registry: Registry) -> Experimen
         raise SceneError(shortlist(faults))
     _check_size(model, sum(map(len, sets)), document)
     tried = list(variants(model))
-    ready, found = ready_variants(tried, scenes, document, registry)
+    ready, distributions, found = ready_variants(tried, scenes, document, registry)
     if found:
         raise SceneError(shortlist(found))
     by_chain = {
@@ -111,7 +113,8 @@ def _experiment(document: Document, path: Path, registry: Registry) -> Experimen
         for name in names
     }
     title = model.name or path.stem
-    return Experiment(title, model, scenes, list(trials(ready, by_chain)))
+    found_trials = list(trials(ready, by_chain))
+    return Experiment(title, model, scenes, found_trials, tuple(sorted(distributions)))
 
 
 def _set_name(goals: GoalsModel) -> str:
@@ -248,6 +251,6 @@ def _check_size(model: ExperimentModel, sets: int, document: Document) -> None:
     tried = sum(prod(map(len, axes_of(model, strategy).values())) for strategy in model.strategies)
     count = tried * sets * len(model.chains)
     if count > MOST_TRIALS:
-        message = f"{tried} variants on {len(model.chains)} chains and {sets} goal sets"
-        message += f" are more than {MOST_TRIALS} trials"
+        message = f"{tried} variants x {len(model.chains)} chains x {sets} goal sets: "
+        message += f"more than {MOST_TRIALS} trials"
         raise SceneError([document.fault("too-many", message, ("strategies",))])

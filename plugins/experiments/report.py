@@ -26,7 +26,8 @@ h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin: 2.2
 .faint { color: #7b8794; } .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .8rem .2rem 0; text-align: right; border-bottom: 1px solid #e4e7eb; }
-th { font-weight: 600; vertical-align: bottom; } th:first-child, td:first-child { text-align: left; }
+th { font-weight: 600; vertical-align: bottom; }
+th:first-child, td:first-child { text-align: left; }
 td.best { font-weight: 650; color: #00664f; } img { max-width: 100%; height: auto; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; } dd { margin: 0; }
 """
@@ -152,11 +153,11 @@ def _page(summary: Summary, drawn: Sequence[Picture]) -> str:
     for chain, goals, rows in summary.groups():
         body.append(f"<h2>{escape(chain)}, {escape(goals)}</h2>")
         body.append(f"<p class='faint'>{escape(_goals(rows))}</p>{_html_table(summary, rows)}")
-        heads = (f"{chain}, {goals}: variants", f"{chain}, {goals}: where goals were reached")
-        for picture in (found for found in drawn if found.title in heads):
-            source = b64encode(picture.content).decode()
-            alt = escape(picture.title, quote=True)
-            body.append(f"<p><img alt='{alt}' src='data:image/png;base64,{source}'></p>")
+        for picture in drawn:
+            if picture.group == (chain, goals):
+                source = b64encode(picture.content).decode()
+                alt = escape(f"{chain}, {goals}: {picture.title}", quote=True)
+                body.append(f"<p><img alt='{alt}' src='data:image/png;base64,{source}'></p>")
     if not drawn:
         body.append("<p class='faint'>Pictures need matplotlib: pip install 'limbik[plot]'</p>")
     body.append(_legend(summary))

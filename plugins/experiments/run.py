@@ -76,7 +76,7 @@ def prepare(experiment: Experiment) -> Run:
     """Cut an experiment into batches and describe it."""
     model = experiment.model
     batches = plan(experiment.trials, model.batch, bool(model.metrics))
-    content, made_with = contents(experiment), versions()
+    content, made_with = contents(experiment), versions(experiment.distributions)
     manifest = {
         "format": 1,
         "name": experiment.name,
@@ -97,6 +97,7 @@ def prepare(experiment: Experiment) -> Run:
                 "goals": trial.goal_set.name,
                 "repeat": trial.goal_set.repeat,
                 "path": trial.goal_set.is_path,
+                "steps": getattr(trial.goal_set.goals, "steps", None),
                 "count": trial.count,
                 "length": trial.scene.chain.length,
                 "label": trial.label,
@@ -157,7 +158,7 @@ def _solved(prepared: Run, folder: Folder, missing: Sequence[Batch]) -> Iterator
         most = min(workers or os.cpu_count() or 1, len(waiting))
         jobs = _jobs(prepared, list(waiting.values()), folder.form)
         try:
-            for part in run_jobs(prepared.engine, jobs, most):
+            for part in run_jobs(prepared.engine, jobs, most, prepared.manifest["versions"]):
                 folder.keep(part.batch, part.content)
                 del waiting[part.batch.table, part.batch.number]
                 losses = 0

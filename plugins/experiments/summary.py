@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from limbik.core.rotation import Array
 from limbik.core.solution import Status
@@ -16,7 +17,7 @@ from limbik.plugins.experiments.folder import read_manifest
 from limbik.plugins.experiments.plan import PATHS, SOLVES
 from limbik.plugins.experiments.table import FAILED, decode
 
-CELLS = 40  # of the map of the reach, along each side
+CELLS = 48  # of the map of the reach, along each side
 SURE = 1.959964  # standard deviations of a 95 % interval
 AXES = ("x", "y", "z")
 
@@ -39,7 +40,8 @@ class Row:
         rounds: Sum of the rounds.
         microseconds: Sum of the times of all solves [µs].
         metrics: Values of each metric, one a draw; NaN where one says nothing.
-        map: Goals and goals reached by cell, (2, CELLS, CELLS).
+        steps: Goals along x, y and z where they are a grid.
+        map: Goals and goals reached by cell of the group's view, (2, cells, cells).
     """
 
     chain: str
@@ -48,6 +50,7 @@ class Row:
     strategy: str
     length: float
     is_path: bool
+    steps: tuple[int, int, int] | None = None
     count: int = 0
     reached: int = 0
     failed: int = 0
@@ -55,7 +58,7 @@ class Row:
     rounds: int = 0
     microseconds: float = 0.0
     metrics: dict[str, list[float]] = field(default_factory=dict)
-    map: Array = field(default_factory=lambda: np.zeros((2, CELLS, CELLS)))
+    map: Array = field(default_factory=lambda: np.zeros((2, 0, 0)))
 
     @property
     def share(self) -> float:
@@ -93,6 +96,30 @@ class Row:
 
 
 @dataclass(frozen=True)
+class View:
+    """How the goals of a group are looked at: along the axis they spread least.
+
+    Attributes:
+        axes: The other two, the upright one second if it is among them.
+        low: Corner of the map, (2,) [length].
+        high: The other corner.
+        cells: Cells along both.
+    """
+
+    axes: tuple[int, int]
+    low: Array
+    high: Array
+    cells: tuple[int, int]
+
+    def cell(self, part: dict[str, Array]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the cells of goals, two indices (m,) each."""
+        at = np.stack([part[AXES[axis]] for axis in self.axes], axis=1)
+        share = (at - self.low) / (self.high - self.low)
+        found = np.clip(share * self.cells, 0, np.array(self.cells) - 1).astype(np.int64)
+        return found[:, 0], found[:, 1]
+
+
+@dataclass(frozen=True)
 class Summary:
     """What a run came to so far.
 
@@ -101,14 +128,14 @@ class Summary:
         manifest: What it is.
         rows: One for each variant on each chain and goal set, in the order of the file.
         parts: Parts there are, and parts there will be.
-        views: For each chain the two axes of the map, and its corners low and high, (2,) each.
+        views: How the goals of a chain and goal set are looked at.
     """
 
     folder: Path
     manifest: dict[str, Any]
     rows: list[Row]
     parts: tuple[int, int]
-    views: dict[str, tuple[tuple[int, int], Array, Array]]
+    views: dict[tuple[str, str], View]
 
     @property
     def metrics(self) -> list[str]:
@@ -135,6 +162,7 @@ def summarise(folder: Path) -> Summary:
         tried = (trial["strategy"], json.dumps(trial["params"], sort_keys=True))
         key = (trial["chain"], trial["goals"], *tried)
         new = Row(*key[:2], trial["label"], trial["strategy"], trial["length"], trial["path"])
+        new.steps = trial["steps"] and tuple(trial["steps"])
         by_trial.append(rows.setdefault(key, new))
     solves, paths = (parts_of(folder, manifest, table) for table in (SOLVES, PATHS))
     views = _views(solves, by_trial)
@@ -153,40 +181,44 @@ def parts_of(folder: Path, manifest: dict[str, Any], table: str) -> list[Path]:
     return sorted((folder / table).glob(f"part-*.{manifest['form']}"))
 
 
-def _views(
-    parts: Sequence[Path], by_trial: Sequence[Row]
-) -> dict[str, tuple[tuple[int, int], Array, Array]]:
-    """Choose for each chain the two axes its goals spread along most, the upright one upward."""
-    bounds: dict[str, tuple[Array, Array]] = {}
+def _views(parts: Sequence[Path], by_trial: Sequence[Row]) -> dict[tuple[str, str], View]:
+    """Choose views that show all goals of each chain and goal set."""
+    bounds: dict[tuple[str, str], tuple[Array, Array]] = {}
+    steps = {}
     for path in parts:
         part = decode(path, ("trial", *AXES))
         points = np.stack([part[axis] for axis in AXES], axis=1)
         for trial in np.unique(part["trial"]).tolist():
             own = points[part["trial"] == trial]
             low, high = own.min(axis=0), own.max(axis=0)
-            chain = by_trial[trial].chain
-            before = bounds.get(chain, (low, high))
-            bounds[chain] = np.minimum(before[0], low), np.maximum(before[1], high)
-    views = {}
-    for chain, (low, high) in bounds.items():
-        flat = int(np.argmin(high - low + np.array([0.0, 1e-9, 0.0])))
-        order = {0: (2, 1), 1: (0, 2), 2: (0, 1)}[flat]
-        middle = 0.5 * (low + high)[list(order)]
-        half = 0.5 * float((high - low)[list(order)].max()) * 1.0001 or 1.0
-        views[chain] = order, middle - half, middle + half
-    return views
+            row = by_trial[trial]
+            group = (row.chain, row.goals)
+            before = bounds.get(group, (low, high))
+            bounds[group] = np.minimum(before[0], low), np.maximum(before[1], high)
+            steps[group] = row.steps
+    return {group: _view(*bounds[group], steps[group]) for group in bounds}
 
 
-def _add_solves(
-    path: Path,
-    by_trial: Sequence[Row],
-    views: dict[str, tuple[tuple[int, int], Array, Array]],
-) -> None:
+def _view(low: Array, high: Array, steps: tuple[int, int, int] | None) -> View:
+    flat = int(np.argmin(high - low + np.array([0.0, 1e-9, 0.0])))
+    axes = {0: (2, 1), 1: (0, 2), 2: (0, 1)}[flat]
+    low, high = low[list(axes)], high[list(axes)]
+    if steps is not None and max(steps[axis] for axis in axes) <= 2 * CELLS:
+        cells = np.array([steps[axis] for axis in axes])  # a cell a goal, the goal in its middle
+        half = 0.5 * (high - low) / np.maximum(cells - 1, 1)
+        half[half == 0.0] = 0.5
+        return View(axes, low - half, high + half, (int(cells[0]), int(cells[1])))
+    middle, half = 0.5 * (low + high), 0.5 * max(float((high - low).max()), 1e-9)
+    return View(axes, middle - half, middle + half, (CELLS, CELLS))
+
+
+def _add_solves(path: Path, by_trial: Sequence[Row], views: dict[tuple[str, str], View]) -> None:
     columns = ("trial", *AXES, "status", "iterations", "distance", "us")
     part = decode(path, columns)
     for trial in np.unique(part["trial"]).tolist():
         own = {name: part[name][part["trial"] == trial] for name in columns}
         row = by_trial[trial]
+        view = views[row.chain, row.goals]
         reached = own["status"] == Status.REACHED
         row.count += len(reached)
         row.reached += int(reached.sum())
@@ -194,11 +226,11 @@ def _add_solves(
         row.misses.append(100.0 * own["distance"] / row.length)
         row.rounds += int(np.maximum(own["iterations"], 0).sum())
         row.microseconds += float(own["us"].sum())
-        order, low, high = views[row.chain]
-        at = np.stack([own[AXES[axis]] for axis in order], axis=1)
-        cell = np.clip((at - low) / (high - low) * CELLS, 0, CELLS - 1).astype(int)
-        np.add.at(row.map[0], tuple(cell.T), 1.0)
-        np.add.at(row.map[1], tuple(cell[reached].T), 1.0)
+        if not row.map.size:
+            row.map = np.zeros((2, *view.cells))
+        first, second = view.cell(own)
+        np.add.at(row.map[0], (first, second), 1.0)
+        np.add.at(row.map[1], (first[reached], second[reached]), 1.0)
 
 
 def _add_metrics(path: Path, by_trial: Sequence[Row], metrics: Sequence[str]) -> None:

@@ -1,6 +1,7 @@
 """Parts of a table as bytes and back: Parquet where pyarrow is installed, else compressed NPZ."""
 
 import json
+import zlib
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from io import BytesIO
@@ -24,6 +25,7 @@ Column = NDArray[Any]
 Table = dict[str, Column]
 STAMP: Final = "limbik"
 """Name under which a part says what it belongs to."""
+_UNREADABLE = (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error)
 _ALL_DIFFERENT = ("goal", "x", "y", "z", "distance")
 
 
@@ -79,12 +81,12 @@ def is_whole(path: Path, rows: int) -> bool:
     """Whether a part can be read and has so many rows; looks at its end only."""
     try:
         if path.suffix == f".{NPZ}":
-            with np.load(path) as part:
+            with path.open("rb") as stream, np.load(stream) as part:
                 return len(part["trial"]) == rows
         from pyarrow import parquet
 
         return int(parquet.read_metadata(path).num_rows) == rows
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+    except _UNREADABLE:
         return False
 
 
@@ -100,13 +102,13 @@ def decode(path: Path, columns: Sequence[str]) -> Table:
     """
     try:
         if path.suffix == f".{NPZ}":
-            with np.load(path) as part:
+            with path.open("rb") as stream, np.load(stream) as part:
                 return {name: part[name] for name in columns}
         return _from_parquet(path, columns)
     except ImportError:
         message = f"{path} is a Parquet file: pip install 'limbik[experiments]'"
         raise EnvironmentProblem(message) from None
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
+    except _UNREADABLE as error:
         message = f"cannot read {path}: {error}; run the experiment again to make it anew"
         raise EnvironmentProblem(message) from error
 

@@ -32,6 +32,7 @@ class Metric:
         meaning: One line.
         measure: Gives the value, or raises `NotJudged`.
         on_path: Whether it says something only where the goals are a path.
+        again: Whether it solves more than the path itself, in ways limbik's own solver knows.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Metric:
     meaning: str
     measure: Callable[[Run], float]
     on_path: bool = False
+    again: bool = False
 
 
 def _at(
@@ -71,7 +73,12 @@ METRICS: tuple[Metric, ...] = (
         "excess_error", "M2", "% L", "miss beyond the unavoidable", _at(100, excess_errors, 100)
     ),
     Metric(
-        "limit_error", "M2", "% L", "miss beyond the best of long solves", _times(100, limit_error)
+        "limit_error",
+        "M2",
+        "% L",
+        "miss beyond the best of long solves",
+        _times(100, limit_error),
+        again=True,
     ),
     Metric(
         "gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains), on_path=True
@@ -89,7 +96,7 @@ METRICS: tuple[Metric, ...] = (
         "acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG), on_path=True
     ),
     Metric("pops", "M5", "", "turns that stand out from those around", pops, on_path=True),
-    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True),
+    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True, again=True),
     Metric(
         "roughness",
         "M7",
@@ -100,9 +107,23 @@ METRICS: tuple[Metric, ...] = (
     ),
     Metric("chatter", "M8", "1/s", "reversals of a limited axis", chatter, on_path=True),
     Metric("limit_excess", "M9", "°", "beyond a limit", _times(_DEG, limit_excess)),
-    Metric("history", "M10", "°", "pose change by the order of goals", _times(_DEG, history)),
-    Metric("drift", "M11", "°", "first pose after the path, 1000 times", _times(_DEG, drift)),
-    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry),
+    Metric(
+        "history",
+        "M10",
+        "°",
+        "pose change by the order of goals",
+        _times(_DEG, history),
+        again=True,
+    ),
+    Metric(
+        "drift",
+        "M11",
+        "°",
+        "first pose after the path, 1000 times",
+        _times(_DEG, drift),
+        again=True,
+    ),
+    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry, again=True),
     Metric(
         "swivel_error",
         "M14",
@@ -120,7 +141,9 @@ METRICS: tuple[Metric, ...] = (
     ),
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
-    Metric("mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour),
+    Metric(
+        "mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour, again=True
+    ),
     Metric(
         "rate_dependence",
         "M19",
@@ -131,7 +154,14 @@ METRICS: tuple[Metric, ...] = (
     Metric("false_statuses", "M20", "", "goals whose status is not true", false_statuses),
     Metric("unsound_poses", "M21", "", "not finite or no rotation", unsound_poses),
     Metric("stretch", "M22", "L", "change of a bone's length", stretch),
-    Metric("latency", "M23", "ms", "95 % of single solves are faster", _times(1000.0, latency)),
+    Metric(
+        "latency",
+        "M23",
+        "ms",
+        "95 % of single solves are faster",
+        _times(1000.0, latency),
+        again=True,
+    ),
 )
 
 BY_NAME = {metric.name: metric for metric in METRICS}

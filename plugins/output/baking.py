@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import Final, TypeVar
 
 from limbik.core.errors import Fault, InputError
@@ -66,10 +67,17 @@ class _Lines:
 
     def __init__(self, total: int) -> None:
         self._total, self._tenth = total, 0
+        self._first: tuple[int, float] | None = None
 
     def show(self, done: int) -> None:
-        """Write a line if another tenth is done."""
+        """Write a line if another tenth is done, with the time left from the second on."""
+        now = monotonic()
+        self._first = self._first or (done, now)
+        before, then = self._first
+        left = ""
+        if before < done < self._total:
+            left = f", {(now - then) * (self._total - done) / (done - before):.0f} s left"
         tenth = 10 * done // self._total
         if tenth > self._tenth:
             self._tenth = tenth
-            print(f"{10 * tenth} % {done}/{self._total}", file=sys.stderr)
+            print(f"{10 * tenth} % {done}/{self._total}{left}", file=sys.stderr)
