@@ -11,6 +11,7 @@ from limbik.core.errors import EnvironmentProblem, InputError, PluginError
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.core.solver import Solver
+from limbik.core.solving import solve_goals
 from limbik.plugins.experiments import batch, table
 from limbik.plugins.experiments.folder import locked, read_manifest
 from limbik.plugins.experiments.plan import PATHS, SOLVES
@@ -18,6 +19,7 @@ from limbik.plugins.experiments.run import prepare, run
 from limbik.plugins.experiments.table import FAILED, NPZ, PARQUET, decode, is_whole
 from limbik.plugins.judging.catalogue import BY_NAME
 from limbik.plugins.judging.run import run_scene
+from limbik.plugins.output.files import write_whole
 from limbik.tests.experiments.helpers import (
     EXPERIMENT,
     assert_same,
@@ -218,9 +220,7 @@ def test_two_runs_at_once_in_one_folder_are_refused(file: Path) -> None:
 
 def test_a_full_disk_loses_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """After some parts the disk is full: a message, no half part, and the run can go on."""
-    from limbik.plugins.experiments import folder
-
-    written = []
+    written: list[Path] = []
 
     def keep(path: Path, content: bytes | str, *, durable: bool = False) -> None:
         if path.parent.name == SOLVES and len(written) == 3:
@@ -228,11 +228,12 @@ def test_a_full_disk_loses_nothing(file: Path, monkeypatch: pytest.MonkeyPatch) 
         written.append(path)
         real(path, content, durable=durable)
 
-    real = folder.write_whole
-    monkeypatch.setattr(folder, "write_whole", keep)
+    real = write_whole
+    monkeypatch.setattr("limbik.plugins.experiments.folder.write_whole", keep)
     with pytest.raises(EnvironmentProblem, match="No space left"):
         run_here(file)
-    monkeypatch.setattr(folder, "write_whole", real)
+    monkeypatch.undo()
+    monkeypatch.chdir(file.parent)
 
     assert run_here(file).before == 2  # and the manifest
     assert_same(tables(Path("run")), _undisturbed(file))
@@ -247,13 +248,12 @@ def test_a_solve_that_fails_is_a_row(file: Path, monkeypatch: pytest.MonkeyPatch
     """A strategy answers nonsense for some goals: those rows say so, the others are as ever."""
     undisturbed = _undisturbed(file)[SOLVES]
     bad = undisturbed["x"] > np.median(undisturbed["x"])
-    real = batch.solve_goals
     edge = float(np.median(undisturbed["x"]))
 
     def failing(scene: Any, registry: Any, threads: int) -> Any:
         if (scene.goals[:, 0] > edge).any():
             raise PluginError("its result is not a finite number")
-        return real(scene, registry, threads)
+        return solve_goals(scene, registry, threads)
 
     monkeypatch.setattr(batch, "solve_goals", failing)
 
@@ -332,10 +332,11 @@ def test_a_part_with_other_rows_is_not_whole(file: Path, form: str) -> None:
 def test_progress_counts_what_earlier_runs_did(file: Path) -> None:
     prepared = prepare(read(file))
     told: list[int] = []
+    again: list[int] = []
     run(prepared, progress=told.append)
     sorted(Path("run/solves").iterdir())[0].unlink()
 
-    run(prepared, progress=(again := []).append)
+    run(prepared, progress=again.append)
 
     total = sum(batch.solves for batch in prepared.batches)
     assert told == sorted(told)
