@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = ("docs/readings.md", "docs/limits.md")
+PAGES = ("docs/readings.md", "docs/limits.md", "docs/experiments.md")
 NAMED = re.compile(r"`([\w/.-]+\.py)(?:::(\w+))?`")
 IDS = (
     [f"A-{k:02}" for k in range(1, 7)]

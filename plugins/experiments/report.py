@@ -4,7 +4,7 @@ from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
 from importlib.util import find_spec
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,8 @@ body { font: 15px/1.5 system-ui, sans-serif; color: #1f2933; max-width: 72rem; m
 h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin: 2.2rem 0 .4rem; }
 .faint { color: #7b8794; } .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .2rem .8rem .2rem 0; text-align: right; border-bottom: 1px solid #e4e7eb; }
+th, td { padding: .2rem .9rem .2rem 0; text-align: right; border-bottom: 1px solid #e4e7eb;
+  white-space: nowrap; }
 th { font-weight: 600; vertical-align: bottom; }
 th:first-child, td:first-child { text-align: left; }
 td.best { font-weight: 650; color: #00664f; } img { max-width: 100%; height: auto; }
@@ -179,11 +180,12 @@ def _html_table(summary: Summary, rows: Sequence[Row]) -> str:
     for index, row in enumerate(rows):
         cells = [f"<td>{escape(row.label)}</td>"]
         for number, (_, values, more) in enumerate(shown):
-            finite = [value for value in values if isfinite(value)]
-            best = (max if more else min)(finite, default=None)
-            mark = " class='best'" if values[index] == best and len(set(finite)) > 1 else ""
+            texts = [_number(value) for value in values]
+            best = (max if more else min)(filter(isfinite, values), default=nan)
+            stands_out = texts[index] == _number(best) and len(set(texts)) > 1
+            mark = " class='best'" if stands_out else ""
             spread = escape(_spread(row)) if number == 0 else ""
-            cells.append(f"<td{mark}>{_number(values[index])}{spread}</td>")
+            cells.append(f"<td{mark}>{texts[index]}{spread}</td>")
         lines.append(f"<tr>{''.join(cells)}</tr>")
     head = f"<tr><th>variant</th>{heads}</tr>"
     return f"<div class='scroll'><table>{head}{''.join(lines)}</table></div>"

@@ -79,6 +79,8 @@ def encode(
 
 def is_whole(path: Path, rows: int) -> bool:
     """Whether a part can be read and has so many rows; looks at its end only."""
+    if not path.exists():
+        return False
     try:
         if path.suffix == f".{NPZ}":
             with path.open("rb") as stream, np.load(stream) as part:

@@ -60,6 +60,8 @@ batch: 40
 engine: serial
 output: run
 """
+MANY = EXPERIMENT.replace("count: 100", "count: 4000").replace("batch: 40", "batch: 400")
+"""With many parts, so that there is something to hit: 4 x 10 of solves and one, 8 of paths."""
 EXACT = {
     SOLVES: ("trial", "goal", "x", "y", "z", "status", "iterations", "distance"),
     PATHS: ("trial", "goals", "reached", "distance_p95", "iterations"),
@@ -117,6 +119,11 @@ def tables(folder: Path, metrics: Sequence[str] = ()) -> Tables:
         order = np.lexsort((joined.get("goal", joined["trial"]), joined["trial"]))
         found[table] = {name: column[order] for name, column in joined.items()}
     return found
+
+
+def parts(folder: Path) -> int:
+    """How many parts of a run are finished."""
+    return sum(len(list((folder / table).glob("part-*"))) for table in EXACT)
 
 
 def assert_same(first: Tables, second: Tables) -> None:

@@ -17,15 +17,16 @@ from limbik.core.errors import EnvironmentProblem
 from limbik.plugins.experiments import engine
 from limbik.tests.experiments.helpers import (
     EXPERIMENT,
+    MANY,
     assert_same,
     command,
+    parts,
     read,
     run_here,
     run_program,
     tables,
     write_files,
 )
-from limbik.tests.experiments.test_killed import MANY, parts
 
 METRICS = ("reach_error", "gain", "unsound_poses")
 needs_dask = pytest.mark.skipif(find_spec("distributed") is None, reason="needs limbik[dask]")
