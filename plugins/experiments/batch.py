@@ -1,10 +1,10 @@
 """Solve one batch and return it as a part of a table; runs in any process, on any machine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from time import perf_counter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from limbik.plugins.experiments.measure import measured, path_columns
 from limbik.plugins.experiments.plan import SOLVES, Batch, Piece
 from limbik.plugins.experiments.table import FAILED, Table, encode
 from limbik.plugins.experiments.trials import Trial
+
+Found = TypeVar("Found")
 
 registry = cache(Registry)
 """The registry of this process."""
@@ -80,11 +82,7 @@ def run_batch(job: Job) -> Part:
 def solve_rows(trial: Trial, piece: Piece, goals: Array) -> Table:
     """Solve goals, (m, 3) [length], of one trial: a row each."""
     count = len(goals)
-    scene = trial.ready(goals[:1], registry())
-    _solved(scene)  # what happens only once is not part of the time
-    started = perf_counter()
-    status, iterations, distance = _numbers(trial.ready(goals, registry()))
-    seconds = perf_counter() - started
+    (status, iterations, distance), us = _timed(_numbers, trial, goals)
     return {
         "trial": np.full(count, trial.number, np.int32),
         "goal": np.arange(piece.start, piece.stop, dtype=np.int64),
@@ -94,21 +92,26 @@ def solve_rows(trial: Trial, piece: Piece, goals: Array) -> Table:
         "status": status,
         "iterations": iterations,
         "distance": distance,
-        "us": np.full(count, 1e6 * seconds / count),
+        "us": np.full(count, us),
     }
 
 
 def _path_row(trial: Trial, goals: Array, metrics: Sequence[str]) -> Table:
     """Solve all goals of a trial and measure them: one row."""
+    solution, us = _timed(_solved, trial, goals)
     scene = trial.ready(goals, registry())
-    started = perf_counter()
-    solution = _solved(scene)
-    seconds = perf_counter() - started
-    row = path_columns(scene, solution)
-    row |= {"us": 1e6 * seconds / len(goals)}
+    row = path_columns(scene, solution) | {"us": us}
     row |= measured(trial, scene, solution, metrics, registry())
     table: Table = {"trial": np.array([trial.number], np.int32)}
     return table | {name: np.array([value], np.float64) for name, value in row.items()}
+
+
+def _timed(solve: Callable[[Scene], Found], trial: Trial, goals: Array) -> tuple[Found, float]:
+    """Return what goals are solved to, and the time of each [µs]."""
+    solve(trial.ready(goals[:1], registry()))  # what happens only once is not part of the time
+    started = perf_counter()
+    found = solve(trial.ready(goals, registry()))
+    return found, 1e6 * (perf_counter() - started) / len(goals)
 
 
 def _solved(scene: Scene) -> Solution | None:
@@ -138,7 +141,6 @@ def _numbers(scene: Scene) -> tuple[Array, Array, Array]:
             np.zeros(count, np.int32),
             np.full(count, np.nan),
         )
-
     halves = (scene.goals[: count // 2], scene.goals[count // 2 :])
     first, second = (_numbers(replace(scene, goals=half)) for half in halves)
     status, iterations, distance = (

@@ -20,7 +20,7 @@ from typing import Any, Final
 from limbik.core.errors import EnvironmentProblem, Fault, InputError
 from limbik.plugins.experiments.identity import differences
 from limbik.plugins.experiments.plan import PATHS, SOLVES, Batch
-from limbik.plugins.experiments.table import is_whole
+from limbik.plugins.experiments.table import is_whole, require_reader
 from limbik.plugins.output.files import UNFINISHED, write_whole
 
 MANIFEST: Final = "manifest.json"
@@ -86,8 +86,9 @@ def read_manifest(path: Path) -> dict[str, Any]:
     return manifest
 
 
-def open_folder(path: Path, manifest: dict[str, Any], new: bool) -> Folder:
-    """Make a run's folder, or go on with the one that is there.
+@contextmanager
+def opened(path: Path, manifest: dict[str, Any], new: bool) -> Iterator[Folder]:
+    """Make a run's folder, or go on with the one that is there; other runs are kept out.
 
     Args:
         path: The folder.
@@ -96,20 +97,13 @@ def open_folder(path: Path, manifest: dict[str, Any], new: bool) -> Folder:
 
     Raises:
         InputError: The folder holds another experiment, or something else.
-        EnvironmentProblem: It cannot be made.
+        EnvironmentProblem: It cannot be made, another run is writing into it, or its parts are
+            Parquet and pyarrow is not installed.
     """
-    number = 1
-    chosen = path
-    while (chosen / MANIFEST).exists() or _has_files(chosen):
-        if (chosen / MANIFEST).exists():
-            there = read_manifest(chosen)
-            if there["fingerprint"] == manifest["fingerprint"]:
-                return Folder(chosen, str(there["form"]))
-            if not new:
-                raise _another(chosen, there, manifest)
-        elif not new:
-            message = "this folder holds other files and no run"
-            raise InputError(Fault("exists", message, file=str(chosen), hint="choose another: -o"))
+    number, chosen = 1, path
+    while (refusal := _refusal(chosen, manifest)) is not None:
+        if not new:
+            raise refusal
         number += 1
         chosen = path.with_name(f"{path.name}-{number}")
     try:
@@ -117,9 +111,28 @@ def open_folder(path: Path, manifest: dict[str, Any], new: bool) -> Folder:
             (chosen / table).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise EnvironmentProblem(f"cannot make {chosen}: {error.strerror or error}") from error
-    text = json.dumps(manifest, indent=1, ensure_ascii=False)
-    write_whole(chosen / MANIFEST, text, durable=True)
-    return Folder(chosen, str(manifest["form"]))
+    with locked(chosen):
+        if (refusal := _refusal(chosen, manifest)) is not None:  # it came in between
+            raise refusal
+        file = chosen / MANIFEST
+        if not file.exists():
+            text = json.dumps(manifest, indent=1, ensure_ascii=False)
+            write_whole(file, text, durable=True)
+        form = str(read_manifest(chosen)["form"])
+        require_reader(form, chosen)
+        yield Folder(chosen, form)
+
+
+def _refusal(path: Path, manifest: dict[str, Any]) -> InputError | None:
+    """Say why a run cannot go into a folder; None if it can."""
+    if (path / MANIFEST).exists():
+        there = read_manifest(path)
+        same = there["fingerprint"] == manifest["fingerprint"]
+        return None if same else _another(path, there, manifest)
+    if _has_files(path):
+        message = "this folder holds other files and no run"
+        return InputError(Fault("exists", message, file=str(path), hint="choose another: -o"))
+    return None
 
 
 def _has_files(path: Path) -> bool:

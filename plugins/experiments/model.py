@@ -186,7 +186,7 @@ class ExperimentModel(Model):
         list[str], Field(default_factory=list, description="of `limbik judge`, by name")
     ]
     batch: Annotated[
-        int | None, Field(ge=1, le=1_000_000, description="goals a part; absent = by size")
+        int | None, Field(ge=1, le=1_000_000, description="most goals of a part; absent = by size")
     ] = None
     engine: Annotated[Engine | None, Field(description="absent = local for long runs")] = None
     workers: Annotated[

@@ -11,9 +11,10 @@ from limbik.plugins.experiments.trials import Trial
 
 SOLVES: Final = "solves"
 PATHS: Final = "paths"
-MOST_JOINTS = 80_000  # joints posed in a batch: about half a second
+MOST_JOINTS = 120_000  # joints posed in a batch: about a second
+LARGEST = 1_000_000  # what a batch may be told to have
 LEAST_JOINTS = 4_000  # fewer are not worth a file
-PARTS = 64  # a smaller experiment is cut into about so many, for several workers
+PARTS = 32  # a smaller experiment is cut into about so many, for several workers
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def plan(trials: Sequence[Trial], goals: int | None, measured: bool) -> list[Bat
 
     Args:
         trials: The trials.
-        goals: Goals of a batch; None for as many as take about half a second.
+        goals: Most goals of a batch; None for as many as take about half a second.
         measured: Whether metrics are measured, a batch for each trial's whole goal set.
     """
     total = sum(trial.count * len(trial.scene.chain) for trial in trials)
@@ -86,7 +87,8 @@ def plan(trials: Sequence[Trial], goals: int | None, measured: bool) -> list[Bat
         room = 1.0
 
     for trial in trials:
-        size = goals or max(most // len(trial.scene.chain), 1)
+        joints = len(trial.scene.chain)
+        size = max(most // joints if goals is None else min(goals, LARGEST // joints), 1)
         start = 0
         while start < trial.count:
             fit = trial.count if trial.goal_set.is_path else start + max(round(room * size), 1)

@@ -33,8 +33,8 @@ from limbik.plugins.experiments.variants import axes_of, variants
 from limbik.plugins.judging.catalogue import BY_NAME
 
 MOST_TRIALS = 20_000
-MOST_MEASURED = 100_000
-"""Goals of a set whose metrics are measured: a measure looks at all of them at once."""
+MOST_MEASURED = 1_000_000
+"""Joints posed for a goal set that is solved or measured as a whole: all are held in memory."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,7 @@ def _experiment(document: Document, path: Path, registry: Registry) -> Experimen
     faults += found
     sets, found = _goal_sets(model, set_names, document, path.parent)
     faults += found
+    faults += _too_many_to_measure(model, sets, names, scenes, document)
     faults += _plane_faults(model, names, scenes, document)
     if faults:
         raise SceneError(shortlist(faults))
@@ -202,7 +203,6 @@ def _goal_sets(
                 faults += wrong
                 is_path = isinstance(goals, PathModel)
                 found.append(_path(name, points, goals) if is_path else GoalSet(name, points))
-        faults += _too_many_to_measure(model, found, number, document)
         sets.append(found)
     return sets, faults
 
@@ -223,14 +223,23 @@ def _csv(name: str, number: int, document: Document, folder: Path) -> tuple[Poin
 
 
 def _too_many_to_measure(
-    model: ExperimentModel, found: list[GoalSet], number: int, document: Document
+    model: ExperimentModel,
+    sets: list[list[GoalSet]],
+    names: list[str],
+    scenes: dict[str, Scene],
+    document: Document,
 ) -> Iterator[Fault]:
-    most = max((len(goal_set.goals) for goal_set in found), default=0)
-    if most > MOST_MEASURED and (model.metrics or found[0].is_path):
-        what = "a path is solved" if found[0].is_path else "metrics are measured"
-        message = f"{what} as a whole, of at most {MOST_MEASURED} goals, not {most}"
-        hint = "" if found[0].is_path else "measure a smaller set in an experiment of its own"
-        yield document.fault("too-many", message, ("goals", number), hint=hint)
+    """Refuse goal sets that are solved or measured as a whole and would not fit into memory."""
+    for number, (goals, found) in enumerate(zip(model.goals, sets, strict=True)):
+        met = [len(scenes[name].chain) for name in goals.chains or names if name in scenes]
+        is_path = isinstance(goals, PathModel)
+        if not found or not met or not (model.metrics or is_path):
+            continue
+        count, most = len(found[0].goals), MOST_MEASURED // max(met)
+        if count > most:
+            what = "a path is solved" if is_path else "metrics are measured"
+            message = f"{what} as a whole: with {max(met)} joints at most {most} goals, not {count}"
+            yield document.fault("too-many", message, ("goals", number))
 
 
 def _plane_faults(

@@ -11,7 +11,7 @@ from limbik.core.errors import EnvironmentProblem
 from limbik.core.jit import is_compiled_before
 from limbik.plugins.experiments.batch import Job, solve_rows
 from limbik.plugins.experiments.engine import WorkerLost, run_jobs
-from limbik.plugins.experiments.folder import Folder, locked, open_folder
+from limbik.plugins.experiments.folder import Folder, opened
 from limbik.plugins.experiments.identity import contents, fingerprint, versions
 from limbik.plugins.experiments.labels import label_columns
 from limbik.plugins.experiments.model import LOCAL, SERIAL
@@ -122,8 +122,7 @@ def run(prepared: Run, new: bool = False, progress: Callable[[int], None] | None
         InputError: The folder holds another experiment.
         EnvironmentProblem: The folder cannot be written, another run is at it, workers keep dying.
     """
-    folder = open_folder(prepared.output, prepared.manifest, new)
-    with locked(folder.path):
+    with opened(prepared.output, prepared.manifest, new) as folder:
         folder.sweep_out()
         missing = folder.missing(prepared.batches)
         before = len(prepared.batches) - len(missing)

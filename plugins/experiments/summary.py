@@ -15,7 +15,7 @@ from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.plugins.experiments.folder import read_manifest
 from limbik.plugins.experiments.plan import PATHS, SOLVES
-from limbik.plugins.experiments.table import FAILED, decode
+from limbik.plugins.experiments.table import FAILED, decode, require_reader
 
 CELLS = 48  # of the map of the reach, along each side
 SURE = 1.959964  # standard deviations of a 95 % interval
@@ -156,6 +156,7 @@ def summarise(folder: Path) -> Summary:
         EnvironmentProblem: A part cannot be read.
     """
     manifest = read_manifest(folder)
+    require_reader(manifest["form"], folder)
     rows: dict[tuple[str, ...], Row] = {}
     by_trial: list[Row] = []
     for trial in manifest["trials"]:

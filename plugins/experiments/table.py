@@ -34,6 +34,17 @@ def form_here() -> str:
     return PARQUET if find_spec("pyarrow") else NPZ
 
 
+def require_reader(form: str, place: Path) -> None:
+    """Refuse parts that cannot be read here.
+
+    Raises:
+        EnvironmentProblem: They are Parquet and pyarrow is not installed.
+    """
+    if form == PARQUET and not find_spec("pyarrow"):
+        message = f"the parts in {place} are Parquet: pip install 'limbik[experiments]'"
+        raise EnvironmentProblem(message)
+
+
 def encode(
     table: Table, labels: Mapping[str, Sequence[Any]], stamp: Mapping[str, Any], form: str
 ) -> bytes:
@@ -100,16 +111,13 @@ def decode(path: Path, columns: Sequence[str]) -> Table:
         columns: Their names; the status comes as its place in `STATUSES`.
 
     Raises:
-        EnvironmentProblem: It cannot be read, or only with pyarrow, which is not installed.
+        EnvironmentProblem: It cannot be read.
     """
     try:
         if path.suffix == f".{NPZ}":
             with path.open("rb") as stream, np.load(stream) as part:
                 return {name: part[name] for name in columns}
         return _from_parquet(path, columns)
-    except ImportError:
-        message = f"{path} is a Parquet file: pip install 'limbik[experiments]'"
-        raise EnvironmentProblem(message) from None
     except _UNREADABLE as error:
         message = f"cannot read {path}: {error}; run the experiment again to make it anew"
         raise EnvironmentProblem(message) from error

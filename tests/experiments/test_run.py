@@ -329,6 +329,17 @@ def test_a_part_with_other_rows_is_not_whole(file: Path, form: str) -> None:
     assert not is_whole(part.with_name(f"none.{form}"), rows)
 
 
+def test_a_run_in_parquet_is_not_gone_on_with_without_pyarrow(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow")
+    run_here(file)
+    monkeypatch.setattr(table, "find_spec", lambda name: None)
+
+    with pytest.raises(EnvironmentProblem, match=r"pip install 'limbik\[experiments\]'"):
+        run_here(file)
+
+
 def test_progress_counts_what_earlier_runs_did(file: Path) -> None:
     prepared = prepare(read(file))
     told: list[int] = []
