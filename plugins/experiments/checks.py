@@ -110,7 +110,7 @@ def _ready(
     distributions: set[str],
 ) -> Ready:
     """Put a variant on a chain, and note whose strategies it uses."""
-    options = merged(scene.settings, variant.options)
+    options = merged(scene.settings, variant)
     try:
         settings = Settings.model_validate(options)
     except ValidationError as error:

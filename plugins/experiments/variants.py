@@ -21,7 +21,7 @@ class Variant:
         number: Of its strategy, from 0.
         strategy: The strategy's name.
         params: What is swept, by the option's name.
-        options: All options it sets on top of a scene's.
+        options: What the strategy sets on top of a scene's options.
         solver: The solver it asks for; None for the scene's.
     """
 
@@ -61,10 +61,7 @@ def variants(model: ExperimentModel) -> Iterator[Variant]:
         axes = axes_of(model, strategy)
         for values in product(*axes.values()):
             params = dict(zip(axes, values, strict=True))
-            options = deepcopy(strategy.options)
-            for name, value in params.items():
-                place(options, name, value)
-            yield Variant(number, strategy.name, params, options, strategy.solver)
+            yield Variant(number, strategy.name, params, strategy.options, strategy.solver)
 
 
 def place(options: dict[str, Any], name: str, value: Any) -> None:
@@ -81,6 +78,9 @@ def place(options: dict[str, Any], name: str, value: Any) -> None:
     options[first] = inner
 
 
-def merged(base: Settings, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a scene's options with a variant's on top."""
-    return {**base.model_dump(exclude_unset=True), **options}
+def merged(base: Settings, variant: Variant) -> dict[str, Any]:
+    """Return a scene's options with the strategy's on top, and on top of both what is swept."""
+    options = {**base.model_dump(exclude_unset=True), **deepcopy(dict(variant.options))}
+    for name, value in variant.params.items():
+        place(options, name, value)
+    return options

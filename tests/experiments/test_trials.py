@@ -12,7 +12,7 @@ from limbik.plugins.experiments.labels import label_columns
 from limbik.plugins.experiments.plan import MOST_JOINTS, PATHS, SOLVES, plan
 from limbik.plugins.experiments.run import prepare
 from limbik.plugins.experiments.variants import place, shown
-from limbik.tests.experiments.helpers import EXPERIMENT, read, write_files
+from limbik.tests.experiments.helpers import EXPERIMENT, SCENE, read, write_files
 
 
 def test_strategies_sweeps_chains_goals_and_repeats_are_crossed(file: Path) -> None:
@@ -64,6 +64,19 @@ def test_all_chains_draw_from_one_seed_and_all_variants_meet_the_same_goals(file
 
     for other in goals[1:]:
         np.testing.assert_array_equal(goals[0], other)
+
+
+def test_a_swept_parameter_keeps_what_the_scene_says_beside_it(tmp_path: Path) -> None:
+    text = EXPERIMENT.replace("finish: [none, newton]", "bend_vector.exclude_bank: [true]")
+    file = write_files(tmp_path, text.replace("arm.yaml]", "other.yaml]"))
+    scene = SCENE.replace("options: {", "options: {held: {base: 1}, ")
+    (tmp_path / "other.yaml").write_text(scene, encoding="utf-8")
+
+    settings = read(file, "sweep.held.bend_base=true").trials[0].scene.settings
+
+    expected = {"use": "manual", "angle": 180, "exclude_bank": True}
+    assert settings.bend_vector == expected
+    assert (settings.held.base, settings.held.bend_base) == (1, True)
 
 
 def test_an_option_within_a_strategys_parameters_can_be_swept() -> None:
