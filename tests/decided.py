@@ -1,10 +1,11 @@
-"""What limits let a small chain reach, decided by branch and bound.
+"""What limits let a small chain reach, decided by branch and bound; statuses held against it.
 
 Boxes of angles are halved until every one is proved too far from the goal or a pose near it is
 found. A box is too far by a bound on the way the end makes inside it: exact to first order about
 its middle, the rest bounded by the lengths of the bones.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from enum import IntEnum
 
@@ -13,12 +14,17 @@ from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
+from limbik.core.registry import Registry
+from limbik.core.solution import Status
+from limbik.core.solver import Solver
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-MOST_BOXES = 400_000
+MOST_BOXES = 1_000_000
 AT_ONCE = 40_000
+TOLERANCE = 1e-3  # of the length
+BEHIND = 0.01  # of the length; a blocked end may be this much farther than the nearest pose
 
 
 class Decision(IntEnum):
@@ -49,10 +55,9 @@ def _decide(chain: Chain, goal: Array, radius: float) -> Decision:
     low = np.maximum(chain.low, -np.pi)[axes[:, 0], axes[:, 1]]
     high = np.minimum(chain.high, np.pi)[axes[:, 0], axes[:, 1]]
     reaches = np.array([chain.lengths[joint:].sum() for joint in axes[:, 0]])
+    looked = 0
     boxes = [(0.5 * (low + high)[None], 0.5 * (high - low)[None])]
-    for _ in range(MOST_BOXES // AT_ONCE * 40):
-        if not boxes:
-            return Decision.FAR
+    while boxes:
         middle, half = boxes.pop()
         away, motion = _ends(chain, axes, goal, middle)
         distance = np.linalg.norm(away, axis=1)
@@ -64,9 +69,10 @@ def _decide(chain: Chain, goal: Array, radius: float) -> Decision:
         nearest = distance - np.minimum((first * half).sum(1) + bend, half @ reaches)
         kept = nearest < radius
         boxes.extend(_halves(middle[kept], half[kept], reaches))
-        if sum(len(part) for part, _ in boxes) > MOST_BOXES:
+        looked += len(middle)
+        if looked > MOST_BOXES:
             return Decision.OPEN
-    return Decision.OPEN
+    return Decision.FAR
 
 
 def _halves(middle: Array, half: Array, reaches: Array) -> Iterator[tuple[Array, Array]]:
@@ -131,3 +137,51 @@ def poses(chain: Chain, count: int, random: np.random.Generator) -> Array:
     """Return random poses inside the limits, (count, n, 3) [rad]."""
     low, high = np.maximum(chain.low, -np.pi), np.minimum(chain.high, np.pi)
     return low + (high - low) * random.random((count, len(chain), 3))
+
+
+def audit(joints: int, count: int, seed: int, registry: Registry) -> Counter[str]:
+    """Hold the statuses of a random chain's goals against what branch and bound decides.
+
+    A third of the goals are ends of poses inside the limits, a third lies near such ends, a third
+    anywhere in and about the reach.
+
+    Args:
+        joints: How many turn, 2 to 4.
+        count: Goals of each third.
+        seed: Of chain and goals.
+        registry: Where the solver finds its strategies.
+
+    Returns:
+        Numbers of `cases`, of each status, of cases `open` (not decided), `false` (the status is
+        not true) and `behind` (blocked, and more than 1 % of the length from the nearest pose).
+    """
+    random = np.random.default_rng(seed)
+    chain = random_chain(random, joints)
+    length = chain.length
+    ends = forward_kinematics(chain, poses(chain, count, random))[0][:, -1]
+    ways = random.normal(size=(2, count, 3))
+    ways /= np.linalg.norm(ways, axis=2, keepdims=True)
+    near = ends + ways[0] * length * random.uniform(0.005, 0.2, (count, 1))
+    anywhere = ways[1] * length * 1.2 * random.random((count, 1)) ** (1 / 3)
+    goals = np.concatenate([ends, near, anywhere])
+
+    tolerance = TOLERANCE * length
+    found = Solver(chain, registry=registry, tolerance=tolerance).solve_many(goals)
+    status, distance = np.asarray(found.status), np.asarray(found.distance)
+    places = forward_kinematics(chain, found.angles)[0][:, -1]
+    inside = ((found.angles >= chain.low - 1e-9) & (found.angles <= chain.high + 1e-9)).all((1, 2))
+    on_goal = inside & (np.linalg.norm(places - goals, axis=1) < tolerance)
+    false = on_goal != (status == Status.REACHED)
+    false[:count] |= status[:count] != Status.REACHED
+    false |= status == Status.STOPPED
+
+    tally = Counter({Status(kind).label: int((status == kind).sum()) for kind in Status})
+    for row in count + np.flatnonzero(status[count:] != Status.REACHED):
+        goal, near = goals[row : row + 1], max(tolerance, distance[row] - BEHIND * length)
+        (decision,) = decide(chain, goal, np.array([near]))
+        if decision == Decision.NEAR:
+            tally["behind"] += 1
+            (decision,) = decide(chain, goal, np.array([tolerance]))
+        tally["open"] += int(decision == Decision.OPEN)
+        false[row] |= decision == Decision.NEAR
+    return tally + Counter(cases=len(goals), false=int(false.sum()))

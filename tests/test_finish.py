@@ -162,50 +162,6 @@ def test_held_joints_stay_while_the_finish_works() -> None:
     )
 
 
-CELL = 0.02  # raster of the reached region; what lies nearer to its border is not decided
-
-
-def region(chain: Chain, steps: int) -> Array:
-    """Cells of the plane that a grid of all poses reaches, their middles, (k, 2)."""
-    moving = np.argwhere(chain.high > chain.low)
-    points = np.zeros((1, 2))
-    turned = np.zeros(1)
-    for joint, axis in moving:
-        # A planar chain: every angle adds to the one before; pitch 0 points along z.
-        grid = np.linspace(chain.low[joint, axis], chain.high[joint, axis], steps)
-        turned = (turned[:, None] + grid).ravel()
-        points = np.repeat(points, steps, axis=0)
-        points = points + np.stack([np.sin(turned), np.cos(turned)], axis=-1)
-    return np.unique(np.round(points / CELL), axis=0) * CELL
-
-
-@pytest.mark.parametrize(("links", "steps"), [(2, 600), (3, 100)])
-@pytest.mark.parametrize(("low", "high"), [(0, 120), (10, 100), (-60, 60)])
-def test_the_status_is_what_brute_force_finds(
-    links: int, steps: int, low: float, high: float
-) -> None:
-    """Goals nearer to the border of the reached region than the raster shows are left out."""
-    chain = planar(links, low, high)
-    angle, radius = np.random.default_rng(links).random((2, 900))
-    angle, radius = 2 * np.pi * angle, (links + 0.5) * np.sqrt(radius)
-    goals = np.stack([np.zeros(900), radius * np.sin(angle), radius * np.cos(angle)], axis=-1)
-    tolerance = 1e-3
-    solution = Solver(chain, tolerance=tolerance).solve_many(goals)
-    status = np.asarray(solution.status)
-    cells = region(chain, steps)
-    nearest = np.array([np.hypot(*(cells - goal[1:]).T).min() for goal in goals])
-    mesh = CELL + links * np.radians(high - low) / (steps - 1) * links / 2
-    out = radius > links + tolerance
-    surely_not = (nearest > tolerance + mesh) & ~out
-
-    assert surely_not.sum() > 100
-    assert not np.isin(status[surely_not], [Status.REACHED]).any()
-    assert (status[out] == Status.OUT_OF_REACH).all()
-    assert (status[surely_not] == Status.BLOCKED).all()
-    # Where the grid comes near a goal, so does the solve.
-    assert np.all(solution.distance <= nearest + CELL)
-
-
 def test_a_goal_out_of_reach_leaves_the_chain_straight_toward_it() -> None:
     """M2: at most 0.1 % of the length beyond the best possible."""
     chain = ball(4)

@@ -37,7 +37,8 @@ def descend(
         goal: World [length].
         tolerance: Distance at which to stop [length].
         steps: Most steps tried.
-        least_gain: A step that removes a smaller share of the distance ends the descent.
+        least_gain: A step that removes a smaller share of the distance, or of a tenth of the
+            length if that is less, ends the descent.
         chain: The chain.
         scratch: (n, WIDTH); its ANGLES are changed, inside the limits.
 
@@ -59,7 +60,7 @@ def descend(
         tried = subtract(goal, end_at(TRIAL, chain, scratch))
         left = norm(tried)
         if left < distance:
-            small = distance - left < least_gain * distance
+            small = distance - left < least_gain * min(distance, 0.1 * chain.length)
             copy_columns(TRIAL, ANGLES, scratch)
             error, distance = tried, left
             damping = max(damping * 0.1, 1e-12)

@@ -16,6 +16,7 @@ from limbik.core.kernels.rotation import (
     hpb_to_matrix,
     matrix,
     multiply,
+    norm,
     rotate,
     scale,
     subtract,
@@ -32,6 +33,8 @@ WIDTH = 30
 class Linkage(NamedTuple):
     """A chain of n joints."""
 
+    length: float
+    """Sum of the bones [length]"""
     offsets: Array
     """(n, 3) [length]"""
     frozen: Array
@@ -102,6 +105,23 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
             write(scale(pitch, -1.0), scratch, joint, AXES + 3)
         write(scale(column(frame, 2), -1.0), scratch, joint, AXES + 6)
     return origin
+
+
+@kernel
+def beyond_reach(goal: Vector, chain: Linkage, scratch: Array) -> float:
+    """Return how far a goal lies beyond all bones that can turn, stretched toward it [length].
+
+    Args:
+        goal: World [length].
+        chain: The chain.
+        scratch: (n, WIDTH), its positions found.
+    """
+    reach, distance = 0.0, 0.0
+    for joint in range(chain.offsets.shape[0] - 1, -1, -1):
+        if turns(joint, 0, chain) or turns(joint, 1, chain) or turns(joint, 2, chain):
+            distance = norm(subtract(goal, read(scratch, joint, POSITION))) - reach
+        reach += norm(vector(chain.offsets, joint))
+    return distance
 
 
 @kernel

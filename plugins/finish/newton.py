@@ -30,6 +30,7 @@ from limbik.plugins.finish.linkage import (
     BEST,
     HOME,
     Linkage,
+    beyond_reach,
     copy_columns,
     end_at,
     write,
@@ -42,7 +43,8 @@ Array = NDArray[np.float64]
 
 FULL_EFFORT_JOINTS = 8  # chains up to this long get all retries
 LEAST_RETRIES = 4
-NEARER_BY_FAR = 0.01  # share of the length by which another fold that misses too must be nearer
+OUT_RETRIES = 40  # for goals that no fold reaches, limits or not
+NEARER_BY_FAR = 0.007  # share of the length by which another fold that misses too must be nearer
 NEARER = 1e-5  # the same for the fold it is in
 COARSE = 1e-3
 THOROUGH = 1e-9  # a step that gains a smaller share of the distance is the last
@@ -86,7 +88,7 @@ def newton(
     verdict: Array,
 ) -> None:
     """End a solve at its goal within the limits, or as near as there is a way to."""
-    chain = Linkage(offsets, frozen, base_position, base_rotation, low, high)
+    chain = Linkage(length, offsets, frozen, base_position, base_rotation, low, high)
     point = (goal[0], goal[1], goal[2])
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):
@@ -95,12 +97,13 @@ def newton(
     copy_columns(ANGLES, HOME, scratch)
     copy_columns(ANGLES, BEST, scratch)
     if nearest >= tolerance:
-        nearest = _buckle(point, aimed, tolerance, length, nearest, params.steps, chain, scratch)
+        nearest = _buckle(point, aimed, tolerance, nearest, params.steps, chain, scratch)
     if nearest >= tolerance:
-        retries = _affordable(params.retries, angles.shape[0]) if reachable else 2
-        nearest = _search(
-            point, aimed, tolerance, length, nearest, retries, params, chain, scratch
-        )
+        retries = _affordable(params.retries, angles.shape[0])
+        if not reachable:
+            straight = nearest <= beyond_reach(point, chain, scratch) + NEARER * length
+            retries = 0 if straight else min(retries, OUT_RETRIES)
+        nearest = _search(point, aimed, tolerance, nearest, retries, params, chain, scratch)
     tried = params.retries > 0 or not reachable
     verdict[0] = 1.0 if nearest >= tolerance and tried else 0.0
     verdict[1] = nearest
@@ -123,7 +126,6 @@ def _buckle(
     goal: Vector,
     aimed: float,
     tolerance: float,
-    length: float,
     nearest: float,
     steps: int,
     chain: Linkage,
@@ -132,9 +134,9 @@ def _buckle(
     """Leave a pose from which no axis alone leads nearer; return the distance of what is BEST."""
     off_home(chain, scratch)
     distance = descend(goal, aimed, steps, IMPATIENT, chain, scratch)
-    if distance < tolerance or distance < nearest - NEARER * length:
+    if distance < tolerance or distance < nearest - NEARER * chain.length:
         copy_columns(ANGLES, BEST, scratch)
-        return _settled(goal, aimed, length, distance, steps, chain, scratch)
+        return _settled(goal, aimed, distance, steps, chain, scratch)
     copy_columns(HOME, ANGLES, scratch)
     nearest = descend(goal, aimed, steps, THOROUGH, chain, scratch)
     copy_columns(ANGLES, BEST, scratch)
@@ -146,7 +148,6 @@ def _search(
     goal: Vector,
     aimed: float,
     tolerance: float,
-    length: float,
     nearest: float,
     retries: int,
     params: Newton,
@@ -170,14 +171,14 @@ def _search(
         distance = descend(goal, aimed, params.steps, IMPATIENT, chain, scratch)
         found = min(found, distance)
         if params.fold == Fold.ANY and (
-            distance < tolerance or distance < nearest - NEARER_BY_FAR * length
+            distance < tolerance or distance < nearest - NEARER_BY_FAR * chain.length
         ):
             nearest, other = distance, True
             copy_columns(ANGLES, BEST, scratch)
         if found < tolerance:
             break
     if other:
-        nearest = _settled(goal, aimed, length, nearest, params.steps, chain, scratch)
+        nearest = _settled(goal, aimed, nearest, params.steps, chain, scratch)
     return min(found, nearest)
 
 
@@ -185,7 +186,6 @@ def _search(
 def _settled(
     goal: Vector,
     aimed: float,
-    length: float,
     nearest: float,
     steps: int,
     chain: Linkage,
@@ -195,7 +195,7 @@ def _settled(
     copy_columns(BEST, ANGLES, scratch)
     settle(end_at(ANGLES, chain, scratch), chain, scratch)
     distance = descend(goal, aimed, steps, THOROUGH, chain, scratch)
-    if distance > max(aimed, nearest + NEARER * length):
+    if distance > max(aimed, nearest + NEARER * chain.length):
         return nearest
     copy_columns(ANGLES, BEST, scratch)
     return distance

@@ -7,7 +7,7 @@ from math import degrees
 import numpy as np
 
 from limbik.core.rotation import Array
-from limbik.plugins.judging.curve import curl, unevenness
+from limbik.plugins.judging.curve import curl, s_shape, unevenness
 from limbik.plugins.judging.latency import latency
 from limbik.plugins.judging.limits import chatter, limit_excess
 from limbik.plugins.judging.mirror import asymmetry
@@ -16,6 +16,7 @@ from limbik.plugins.judging.motion import accelerations, gains, plane_speeds, po
 from limbik.plugins.judging.optimum import limit_error
 from limbik.plugins.judging.reach import excess_errors, false_statuses, reach_errors
 from limbik.plugins.judging.replay import drift, flips, history
+from limbik.plugins.judging.roundtrip import round_trip
 from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import roughness
 from limbik.plugins.judging.soundness import stretch, unsound_poses
@@ -82,6 +83,7 @@ METRICS: tuple[Metric, ...] = (
     Metric("limit_excess", "M9", "°", "beyond a limit", _times(_DEG, limit_excess)),
     Metric("history", "M10", "°", "pose change by the order of goals", _times(_DEG, history)),
     Metric("drift", "M11", "°", "first pose after the path, 1000 times", _times(_DEG, drift)),
+    Metric("round_trip", "M12", "°", "pose change, IK to FK and back", _times(_DEG, round_trip)),
     Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry),
     Metric(
         "swivel_error",
@@ -93,6 +95,7 @@ METRICS: tuple[Metric, ...] = (
     Metric("plane_speed_p95", "M15", "°/s", "of the bend plane", _at(95, plane_speeds, _DEG)),
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
+    Metric("s_shape", "M17", "L", "change of the bend's side from the middle", s_shape),
     Metric("mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour),
     Metric(
         "rate_dependence",
