@@ -120,4 +120,4 @@ def _goals(chain: Chain, random: np.random.Generator) -> Array:
     rest, _ = forward_kinematics(chain, np.clip(chain.rest, chain.low, chain.high))
     joint = rest[random.integers(len(rest))]
     way = random.normal(size=3)
-    return np.stack([rest[0], joint, joint + 1e-10, 1e6 * way, chain.length * way])
+    return np.stack([rest[0], joint, joint + 1e-10, 1e6 * way, 0.4 * chain.length * way])

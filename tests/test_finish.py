@@ -3,103 +3,11 @@
 import numpy as np
 import pytest
 
-from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
-from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.core.solver import Solver
-
-FIXED = (0.0, 0.0)
-
-
-def ball(joints: int) -> Chain:
-    return Chain([Joint(f"j{i}", (0, 0, 1.0 if i else 0.0)) for i in range(joints)])
-
-
-def arm() -> Chain:
-    return Chain(
-        [
-            Joint.degrees("shoulder", heading=(-130, 60), pitch=(-85, 85), bank=(-90, 90)),
-            Joint.degrees("elbow", (0, 0, 30), heading=FIXED, pitch=(0, 145), bank=(-80, 80)),
-            Joint.degrees("wrist", (0, 0, 26), heading=(-30, 30), pitch=(-70, 70), bank=FIXED),
-            Joint.degrees("hand", (0, 0, 18), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def leg() -> Chain:
-    turned = (0, -90, 0)
-    return Chain(
-        [
-            Joint.degrees("hip", (10, 0, 0), turned, (0, 0, 0), (-40, 40), (-30, 110), (-45, 45)),
-            Joint.degrees("knee", (0, 0, 42), heading=FIXED, pitch=(-145, 0), bank=FIXED),
-            Joint.degrees("ankle", (0, 0, 40), heading=FIXED, pitch=(-40, 50), bank=(-20, 20)),
-            Joint.degrees("toe", (0, 0, 16), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def six_hinges() -> Chain:
-    def roll(name: str, along: float, most: float) -> Joint:
-        return Joint.degrees(name, (0, 0, along), heading=FIXED, pitch=FIXED, bank=(-most, most))
-
-    def bend(name: str, along: float, low: float, high: float) -> Joint:
-        return Joint.degrees(name, (0, 0, along), heading=FIXED, pitch=(low, high), bank=FIXED)
-
-    return Chain(
-        [
-            roll("base", 0, 170),
-            bend("shoulder", 40, -90, 110),
-            bend("elbow", 45, -150, 60),
-            roll("forearm", 20, 180),
-            bend("wrist", 22, -115, 115),
-            roll("flange", 8, 180),
-            Joint.degrees("tool", (0, 5, 8), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def spine(joints: int) -> Chain:
-    bent = (-25, 25)
-    return Chain(
-        [
-            Joint.degrees(f"v{i}", (0, 0, float(i > 0)), heading=bent, pitch=bent, bank=bent)
-            for i in range(joints)
-        ]
-    )
-
-
-def planar(links: int, low: float, high: float) -> Chain:
-    joints = [
-        Joint.degrees(f"j{i}", (0, 0, float(i > 0)), heading=FIXED, pitch=(low, high), bank=FIXED)
-        for i in range(links)
-    ]
-    end = Joint.degrees("end", (0, 0, 1), heading=FIXED, pitch=FIXED, bank=FIXED)
-    return Chain([*joints, end])
-
-
-CHAINS = {
-    "ball3": ball(3),
-    "ball4": ball(4),
-    "ball7": ball(7),
-    "ball28": ball(28),
-    "arm": arm(),
-    "leg": leg(),
-    "six hinges": six_hinges(),
-    "spine8": spine(8),
-    "spine24": spine(24),
-    "planar3": planar(3, 0, 120),
-    "planar4": planar(4, 10, 100),
-}
-
-
-def reachable(chain: Chain, count: int, seed: int) -> Array:
-    """Ends of random poses inside the limits, (count, 3)."""
-    low = np.where(np.isfinite(chain.low), chain.low, -np.pi)
-    high = np.where(np.isfinite(chain.high), chain.high, np.pi)
-    random = np.random.default_rng(seed).random((count, len(chain), 3))
-    positions, _ = forward_kinematics(chain, low + (high - low) * random)
-    return np.ascontiguousarray(positions[:, -1])
+from limbik.tests.kinds import CHAINS, arm, ball, leg
+from limbik.tests.limbs import reachable
 
 
 @pytest.mark.parametrize("name", CHAINS)

@@ -155,7 +155,6 @@ def test_curl_and_unevenness_of_known_bends() -> None:
 
 def test_the_middle_of_an_s_is_found_and_an_arc_has_none() -> None:
     judged = run(circle(5))
-    places = np.zeros((2, 1, 3))
     for turns, off in (([20.0, 20.0, -20.0, -20.0], 0.0), ([20.0, -20.0, -20.0, -20.0], 0.2)):
         ways = np.radians(np.cumsum([0.0, *turns]))
         bones = np.stack([0 * ways, np.sin(ways), np.cos(ways)], axis=1)
