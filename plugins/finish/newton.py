@@ -137,9 +137,6 @@ def _buckle(
     if distance < tolerance or distance < nearest - NEARER * chain.length:
         copy_columns(ANGLES, BEST, scratch)
         return _settled(goal, aimed, distance, steps, chain, scratch)
-    copy_columns(HOME, ANGLES, scratch)
-    nearest = descend(goal, aimed, steps, THOROUGH, chain, scratch)
-    copy_columns(ANGLES, BEST, scratch)
     return nearest
 
 
@@ -163,7 +160,7 @@ def _search(
     Returns:
         The least distance found [length].
     """
-    found, other = nearest, False
+    found = nearest
     for attempt in range(retries):
         other_fold(attempt, chain, scratch)
         for _ in range(2):
@@ -173,13 +170,11 @@ def _search(
         if params.fold == Fold.ANY and (
             distance < tolerance or distance < nearest - NEARER_BY_FAR * chain.length
         ):
-            nearest, other = distance, True
+            nearest = distance
             copy_columns(ANGLES, BEST, scratch)
         if found < tolerance:
             break
-    if other:
-        nearest = _settled(goal, aimed, nearest, params.steps, chain, scratch)
-    return min(found, nearest)
+    return min(found, _settled(goal, aimed, nearest, params.steps, chain, scratch))
 
 
 @kernel

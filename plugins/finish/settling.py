@@ -18,7 +18,7 @@ from limbik.plugins.finish.linkage import (
 from limbik.plugins.finish.steps import find_step, take_step
 
 LONGEST_STEP = 0.35  # [rad]; the end strays with its square
-STEPS = 12
+STEPS = 8
 STILL = 1e-3  # [rad]; a shorter step ends it
 DAMPING = 1e-6  # keeps a stretched limb solvable
 
