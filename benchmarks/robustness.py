@@ -62,7 +62,7 @@ def success(share: float) -> Rows:
         goals = reachable(chain, round(1000 * share), 20)
         ours, bare = met(chain, goals), met(chain, goals, **BARE)
         shares = (f"{ours[0]:.1f} %", f"{bare[0]:.1f} %")
-        yield (name, *shares, f"{ours[1]:.1g} % L", f"{bare[1]:.1g} % L")
+        yield (name, *shares, f"{_short(ours[1])} % L", f"{_short(bare[1])} % L")
 
 
 def extension(share: float) -> Rows:
@@ -161,9 +161,12 @@ def _measured(run: Run, name: str) -> float | None:
 
 def _value(run: Run, name: str) -> str:
     value = _measured(run, name)
-    if value is None:
-        return ""
-    return "0" if abs(value) < 1e-6 else f"{value:.0f}" if value >= 100 else f"{value:.2g}"
+    return "" if value is None else _short(value)
+
+
+def _short(value: float) -> str:
+    """Return a number as a table shows it."""
+    return f"{value:,.0f}" if value >= 10.0 else "0" if value < 1e-6 else f"{value:.2g}"
 
 
 def fuzzing(share: float) -> Rows:
