@@ -255,11 +255,12 @@ class Solver:
     @property
     def _columns(self) -> int:
         """How many numbers the kernel gives for each goal."""
-        return 7
+        return 8
 
     def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
         """Make the solution of one goal or many; numbers and rows have more to read."""
-        return Solution(**fields)
+        nearest = numbers[..., 7]
+        return Solution(**fields, nearest=float(nearest) if numbers.ndim == 1 else nearest)
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))

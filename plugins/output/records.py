@@ -64,6 +64,7 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "reached": bool(solution.reached),
         "remark": solution.remark,
         "distance": float(solution.distance),
+        "nearest": None if solution.nearest is None else float(solution.nearest),
         "iterations": int(solution.iterations),
         "angles": np.degrees(solution.angles).tolist(),
         "positions": solution.positions.tolist(),
