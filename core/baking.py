@@ -6,10 +6,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from limbik.core.formats import Bake
-from limbik.core.mirror import mirrored_solution
+from limbik.core.body import BodySolution, BodySolver, chain_solutions
+from limbik.core.bodyscene import BodyScene
+from limbik.core.formats import Bake, BodyBake, Motion
+from limbik.core.mirror import mirrored_solution, side_swapped
 from limbik.core.motion import motion_metrics
 from limbik.core.registry import Registry
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
@@ -78,12 +81,60 @@ def _blocks(
     return parts
 
 
+def bake_body(
+    scene: BodyScene,
+    registry: Registry | None = None,
+    *,
+    mirrored: bool = False,
+    frame_time: float | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> BodyBake:
+    """Solve all frames of a scene with several chains; as `bake_scene`."""
+    solver = BodySolver.of(scene, registry)
+    found = []
+    for number, body in enumerate(solver.frames(scene.goals), 1):
+        found.append(body)
+        if progress is not None and number % BLOCK == 0:
+            progress(number)
+    seconds = frame_time or scene.frame_time or FRAME_TIME
+    solutions = {name: stacked(of) for name, of in chain_solutions(found).items()}
+    if mirrored:
+        names = side_swapped(list(solutions))
+        images = map(mirrored_solution, solutions.values())
+        solutions = dict(zip(names, images, strict=True))
+    metrics = {name: motion_metrics(of).record() for name, of in solutions.items()}
+    return BodyBake(scene, solutions, motion_of(found, seconds), seconds, mirrored, metrics)
+
+
+def motion_of(found: Sequence[BodySolution], frame_time: float) -> Motion:
+    """Return the motion of a body's whole skeleton.
+
+    Args:
+        found: m frames.
+        frame_time: Seconds a frame.
+    """
+    motion = found[0].skeleton.motion
+    shape = (len(found), *motion.offsets.shape[1:])
+    turns = np.stack([body.turns for body in found])
+    offsets = np.broadcast_to(motion.offsets, shape).copy()
+    return replace(motion, offsets=offsets, turns=turns, frame_time=frame_time)
+
+
+def stacked(solutions: Sequence[Solution]) -> Solution:
+    """Put solutions of single goals, of one chain, into one with a leading goal axis."""
+    return _gathered(solutions, np.stack)
+
+
 def _joined(parts: Sequence[Solution]) -> Solution:
     """Put solutions with leading goal axes behind each other."""
+    return _gathered(parts, np.concatenate)
+
+
+def _gathered(parts: Sequence[Solution], gather: Callable[[list[Array]], Array]) -> Solution:
     names = [*_ARRAYS, *(PLANAR_ARRAYS if isinstance(parts[-1], PlanarSolution) else ())]
     joined: dict[str, Any] = {
-        name: np.concatenate([getattr(part, name) for part in parts])
+        name: gather([getattr(part, name) for part in parts])
         for name in names
         if getattr(parts[-1], name) is not None
     }
-    return replace(parts[-1], **joined)
+    return replace(parts[0], **joined, continuity=parts[-1].continuity)

@@ -1,6 +1,7 @@
 """`Joint` and `Chain`: what a user builds; checked once, then frozen arrays (000 §4, §7.4)."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from math import isfinite, pi, radians
 from typing import Final
@@ -8,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from limbik.core.errors import ChainError
+from limbik.core.kernels.rotation import matrix_to_hpb
 from limbik.core.rotation import Array, hpb_to_matrix
 
 Vector = tuple[float, float, float]
@@ -182,6 +184,23 @@ class Chain:
             if np.abs(direction - first).max() > STRAIGHT:
                 return False
         return True
+
+    def moved(self, position: Array, rotation: Array) -> "Chain":
+        """Return the chain with its base elsewhere; nothing is checked again.
+
+        Args:
+            position: Where the parent of joint 0 stands in the world, (3,) [length].
+            rotation: Its axes in the world, (3, 3).
+        """
+        found = copy(self)
+        rows = rotation.tolist()
+        turn = matrix_to_hpb((tuple(rows[0]), tuple(rows[1]), tuple(rows[2])), 0.0)
+        axes = np.array(rotation, np.float64, order="C")
+        axes.flags.writeable = False
+        object.__setattr__(found, "base_position", tuple(position.tolist()))
+        object.__setattr__(found, "base_turn", turn)
+        object.__setattr__(found, "base_rotation", axes)
+        return found
 
     def mirrored(self) -> "Chain":
         """Return the chain mirrored in the world's YZ plane (M-14).

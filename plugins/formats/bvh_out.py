@@ -9,13 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from limbik.core.formats import Bake, Motion, Output
+from limbik.core.formats import Bake, BodyBake, Motion, Output
 from limbik.core.frames import Y_UP
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.plugins.formats.bvh import BvhJoint, Clip
 from limbik.plugins.formats.bvh_chain import ClipBody
 from limbik.plugins.formats.bvh_motion import mirrored_clip
+from limbik.plugins.formats.bvh_skeleton import ClipSkeleton
 from limbik.plugins.formats.channels import matrix_to_channels
 from limbik.plugins.formats.tables import unmirrored
 
@@ -32,6 +33,16 @@ def write(bake: Bake) -> str:
         clip = replace(body.baked(angles), frame_time=bake.frame_time)
     else:
         clip = clip_of(body.motion(angles, bake.frame_time))
+    return clip_text(mirrored_clip(clip) if bake.mirrored else clip)
+
+
+def write_body(bake: BodyBake) -> str:
+    """Write the whole skeleton of a scene with several chains."""
+    skeleton = bake.scene.skeleton
+    if isinstance(skeleton, ClipSkeleton):
+        clip = skeleton.baked(bake.motion, [part.limb for part in bake.scene.parts])
+    else:
+        clip = clip_of(bake.motion)
     return clip_text(mirrored_clip(clip) if bake.mirrored else clip)
 
 
@@ -113,4 +124,5 @@ def _plain(value: float) -> str:
 @hookimpl
 def limbik_outputs() -> Iterable[Output]:
     """Offer `bvh`."""
-    return [Output("bvh", (".bvh",), write, "A motion clip; a scene's own clip is kept whole.")]
+    sentence = "A motion clip; a scene's own clip is kept whole."
+    return [Output("bvh", (".bvh",), write, sentence, write_body)]
