@@ -36,8 +36,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from limbik.core.binding import Bound
-from limbik.core.bodies import read_source
 from limbik.core.chain import MAX_JOINTS, Chain, Joint
+from limbik.core.chainfile import read_source
 from limbik.core.choices import checkable, strategy_faults
 from limbik.core.errors import ChainError, Fault, SceneError, shortlist
 from limbik.core.formats import Body

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from limbik.core.chain import Chain
+from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene, require_own_solver
@@ -53,11 +54,6 @@ class Run:
         return self.solver.settings
 
     @cached_property
-    def local(self) -> Array:
-        """Rotations of the joints relative to their frozen frames, (m, n, 3, 3)."""
-        return hpb_to_matrix(self.solution.angles)
-
-    @cached_property
     def from_root(self) -> Array:
         """Distances of the goals from the bend root [length], (m,)."""
         root = self.settings.bend_reference - 1
@@ -100,18 +96,6 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     solver = scene_solver(scene, registry)
     solution = solve_part(solver, scene, slice(None))
     return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)
-
-
-def turn_between(first: Array, second: Array) -> Array:
-    """Return the angles between rotations [rad].
-
-    Args:
-        first: (..., 3, 3).
-        second: (..., 3, 3).
-    """
-    # |A - B|² = 8 sin²(angle / 2): exact for small angles, where the trace is not.
-    apart = np.linalg.norm(first - second, axis=(-2, -1)) / np.sqrt(8.0)
-    return np.asarray(2.0 * np.arcsin(np.clip(apart, 0.0, 1.0)))
 
 
 def pose_difference(run: Run, first: Array, second: Array) -> float:
