@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from limbik.core.body import BodySolution, BodySolver, chain_solutions
+from limbik.core.body import BodySolver, chain_solutions
 from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Bake, BodyBake, Motion
 from limbik.core.mirror import mirrored_solution, side_swapped
@@ -14,6 +14,7 @@ from limbik.core.motion import motion_metrics
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
+from limbik.core.skeleton import Limb, Skeleton
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
 from limbik.core.solving import scene_solver, solve_part
@@ -98,25 +99,34 @@ def bake_body(
             progress(number)
     seconds = frame_time or scene.frame_time or FRAME_TIME
     solutions = {name: stacked(of) for name, of in chain_solutions(found).items()}
+    chains = [(part.limb, solutions[part.name].angles) for part in scene.parts]
+    motion = body_motion(scene.skeleton, chains, seconds)
     if mirrored:
         names = side_swapped(list(solutions))
         images = map(mirrored_solution, solutions.values())
         solutions = dict(zip(names, images, strict=True))
     metrics = {name: motion_metrics(of).record() for name, of in solutions.items()}
-    return BodyBake(scene, solutions, motion_of(found, seconds), seconds, mirrored, metrics)
+    return BodyBake(scene, solutions, motion, seconds, mirrored, metrics)
 
 
-def motion_of(found: Sequence[BodySolution], frame_time: float) -> Motion:
-    """Return the motion of a body's whole skeleton.
+def body_motion(
+    skeleton: Skeleton, chains: Sequence[tuple[Limb, Array]], frame_time: float
+) -> Motion:
+    """Return the motion of a whole skeleton, what is of no chain moving as it does by itself.
 
     Args:
-        found: m frames.
+        skeleton: The skeleton.
+        chains: Limb and HPB angles, (m, n, 3) [rad], in the order they were solved.
         frame_time: Seconds a frame.
     """
-    motion = found[0].skeleton.motion
-    shape = (len(found), *motion.offsets.shape[1:])
-    turns = np.stack([body.turns for body in found])
-    offsets = np.broadcast_to(motion.offsets, shape).copy()
+    motion = skeleton.motion
+    count = len(chains[0][1])
+    offsets, turns = (
+        np.broadcast_to(array, (count, *array.shape[1:])).copy()
+        for array in (motion.offsets, motion.turns)
+    )
+    for limb, angles in chains:
+        turns[:, list(limb.at[: limb.written])] = limb.turns(angles)
     return replace(motion, offsets=offsets, turns=turns, frame_time=frame_time)
 
 

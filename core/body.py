@@ -57,7 +57,6 @@ class BodySolution:
         solutions: What became of each chain that had a goal, by its name, in the world.
         positions: World positions of all joints, (n, 3) [length].
         rotations: Their world rotations, (n, 3, 3).
-        turns: Their rotations relative to their parents, (n, 3, 3).
         continuity: Of each chain, for the next solve of a path.
     """
 
@@ -65,7 +64,6 @@ class BodySolution:
     solutions: dict[str, Solution]
     positions: Array
     rotations: Array
-    turns: Array
     continuity: dict[str, Continuity]
 
     @property
@@ -99,7 +97,7 @@ class BodySolver:
         self.skeleton = skeleton
         self.chains = tuple(chains)
         self._places, self._rotations = skeleton.motion.world()
-        self._below = [_below(skeleton, chain.limb) for chain in chains]
+        self._moves = [_Moves(skeleton, chain.limb) for chain in chains]
 
     @classmethod
     def of(cls, scene: BodyScene, registry: Registry | None = None) -> "BodySolver":
@@ -151,20 +149,14 @@ class BodySolver:
         self._check(goals, frame)
         motion = self.skeleton.motion
         at = frame if len(motion.turns) > 1 else 0
-        found = BodySolution(
-            self.skeleton,
-            {},
-            self._places[at].copy(),
-            self._rotations[at].copy(),
-            motion.turns[at].copy(),
-            {},
-        )
-        for chain, below in zip(self.chains, self._below, strict=True):
+        places, rotations = self._places[at].copy(), self._rotations[at].copy()
+        found = BodySolution(self.skeleton, {}, places, rotations, {})
+        for chain, moves in zip(self.chains, self._moves, strict=True):
             if chain.name in goals:
                 goal = checked(goals[chain.name], (3,), f"goal of '{chain.name}'")
                 before = (continuity or {}).get(chain.name)
-                self._pose(chain, goal, frame, before, trace, found)
-                _carry(found, motion.offsets[at], below)
+                solution = self._solve(chain, goal, frame, before, trace, found)
+                moves.carry(solution, motion.offsets[at], motion.turns[at], found)
         return found
 
     def frames(
@@ -203,7 +195,7 @@ class BodySolver:
         if count > 1 and not 0 <= frame < count:
             raise InputError(f"frame {frame}: the skeleton moves for frames 0 to {count - 1}")
 
-    def _pose(
+    def _solve(
         self,
         chain: BodyChain,
         goal: Array,
@@ -211,8 +203,8 @@ class BodySolver:
         before: Continuity | None,
         trace: bool,
         found: BodySolution,
-    ) -> None:
-        """Solve one chain and put its angles into the skeleton's turns."""
+    ) -> Solution:
+        """Solve one chain from where its base is by now."""
         place, turn = self.skeleton.placed(chain.limb, found.positions, found.rotations)
         solver = chain.solver.moved(place, turn)
         asked: dict[str, Any] = {
@@ -231,26 +223,32 @@ class BodySolver:
         found.solutions[chain.name] = solution
         if solution.continuity is not None:
             found.continuity[chain.name] = solution.continuity
-        found.turns[list(chain.limb.at[: chain.limb.written])] = chain.limb.turns(solution.angles)
+        return solution
 
 
-def _below(skeleton: Skeleton, limb: Limb) -> list[tuple[int, int]]:
-    """Give the joints a limb moves or turns, parents first, each with its parent."""
-    first = limb.at[0]
-    return [
-        (joint, skeleton.parents[joint])
-        for joint in range(first, len(skeleton.names))
-        if first in skeleton.above(joint)
-    ]
+class _Moves:
+    """What a solved limb moves: its own joints, and those that hang from them."""
 
+    def __init__(self, skeleton: Skeleton, limb: Limb) -> None:
+        self._at = np.array(limb.at)
+        self._written = np.array(limb.at[: limb.written])
+        self._after = limb.after[: limb.written]
+        first, own = limb.at[0], {WORLD, *limb.at[: limb.written]}
+        below = [k for k in range(first, len(skeleton.names)) if first in skeleton.above(k)]
+        self._below = [(k, skeleton.parents[k]) for k in below if k not in own]
 
-def _carry(found: BodySolution, offsets: Array, below: Sequence[tuple[int, int]]) -> None:
-    """Put joints where the turns above them carry them."""
-    positions, rotations, turns = found.positions, found.rotations, found.turns
-    for joint, parent in below:
-        if parent < 0:
-            rotations[joint] = turns[joint]
-        else:
+    def carry(self, solution: Solution, offsets: Array, turns: Array, found: BodySolution) -> None:
+        """Put the limb's joints where they were solved, and what hangs from them along.
+
+        Args:
+            solution: Of the limb.
+            offsets, turns: Of the skeleton's joints relative to their parents.
+            found: What is changed.
+        """
+        positions, rotations = found.positions, found.rotations
+        positions[self._at] = solution.positions
+        rotations[self._written] = solution.rotations[: len(self._written)] @ self._after
+        for joint, parent in self._below:
             positions[joint] = positions[parent] + rotations[parent] @ offsets[joint]
             rotations[joint] = rotations[parent] @ turns[joint]
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import isfinite, pi, radians
 from typing import Final
 
@@ -167,6 +168,13 @@ class Chain:
         """Sum of the bone lengths [length]."""
         return float(self.lengths.sum())
 
+    @cached_property
+    def rest_pose(self) -> tuple[Array, Array]:
+        """World positions (n, 3) [length] and rotations (n, 3, 3) of the joints at rest."""
+        from limbik.core.pose import forward_kinematics
+
+        return forward_kinematics(self, self.rest)
+
     @property
     def is_straight(self) -> bool:
         """Whether all joints lie on one line in the rest pose (bind type, 000 §7.4).
@@ -200,6 +208,12 @@ class Chain:
         object.__setattr__(found, "base_position", tuple(position.tolist()))
         object.__setattr__(found, "base_turn", turn)
         object.__setattr__(found, "base_rotation", axes)
+        places, turns = self.rest_pose
+        turn = axes @ self.base_rotation.T
+        found.__dict__["rest_pose"] = (
+            position + (places - np.array(self.base_position)) @ turn.T,
+            turn @ turns,
+        )
         return found
 
     def mirrored(self) -> "Chain":

@@ -68,6 +68,7 @@ class Body:
             holds no motion.
         goal_names: m names.
         frame_time: Seconds a frame of that motion.
+        goal_turns: How the end is turned there, HPB, (m, 3) [rad]; turns pole rotors.
     """
 
     chain: Chain
@@ -75,6 +76,7 @@ class Body:
     goals: Array | None = None
     goal_names: tuple[str, ...] = ()
     frame_time: float | None = None
+    goal_turns: Array | None = None
 
     def motion(self, angles: Array, frame_time: float) -> Motion:
         """Return the whole skeleton's motion for the chain's angles, HPB (m, n, 3) [rad]."""

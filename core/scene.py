@@ -216,8 +216,10 @@ def build_scene(
     except ChainError as error:
         found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
     goal_names, goals, goal_faults = goals_of(model, document, folder)
+    turns = turns_of(model)
     if body and body.goals is not None and "goals" not in document.content:
         goal_names, goals = body.goal_names, body.goals
+        turns = body.goal_turns if model.pole and model.pole.rotor else None
     found += goal_faults
     if chain is None or found:
         raise SceneError(shortlist(found))
@@ -236,7 +238,7 @@ def build_scene(
         solver,
         pole_of(model),
         model.pole is not None and model.pole.bind,
-        turns_of(model),
+        turns,
     )
 
 

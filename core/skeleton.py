@@ -129,6 +129,17 @@ class Skeleton:
             raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
         return way[way.index(first) :: -1]
 
+    def seen_from(self, joint: int, places: Array) -> Array:
+        """Return world positions, one a frame, in the axes of a joint of the skeleton's own motion.
+
+        Args:
+            joint: Its index.
+            places: (m, 3) [length].
+        """
+        positions, rotations = self.motion.world()
+        away = places - positions[:, joint]
+        return np.asarray((rotations[:, joint].swapaxes(-1, -2) @ away[..., None])[..., 0])
+
     def placed(self, limb: Limb, positions: Array, rotations: Array) -> tuple[Array, Array]:
         """Return where a limb's base is and how it is turned.
 

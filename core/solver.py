@@ -79,6 +79,7 @@ class Solver:
             position: Where the parent of joint 0 stands in the world, (3,) [length].
             rotation: Its axes in the world, (3, 3).
         """
+        self._plugs, self._kernel  # noqa: B018 - made once, for all copies
         found = copy(self)
         found.chain = self.chain.moved(position, rotation)
         body = self._fixed[0]._replace(

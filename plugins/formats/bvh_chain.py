@@ -24,7 +24,7 @@ from limbik.core.chain import Chain
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Body, Inspection, Motion
 from limbik.core.frames import Y_UP
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.settings import Model
 from limbik.core.wording import found_words, near_match
 from limbik.plugins.formats.bvh import BvhJoint, Clip, read_bvh
@@ -132,10 +132,18 @@ def read_body(model: BvhModel, folder: Path) -> ClipBody:
         model_joint(clip.joints[index], offset) for index, offset in zip(at, offsets, strict=True)
     ]
     join = joined(models)
-    goals = _path(clip, at, model.scale)
-    names = tuple(map(str, numbers))
+    goals, turns = _path(clip, at, model.scale)
     return ClipBody(
-        Chain(join.joints), (), goals, names, clip.frame_time, clip, model.scale, tuple(at), join
+        Chain(join.joints),
+        (),
+        goals,
+        tuple(map(str, numbers)),
+        clip.frame_time,
+        matrix_to_hpb(turns @ join.frames[-1]),
+        clip,
+        model.scale,
+        tuple(at),
+        join,
     )
 
 
@@ -211,14 +219,16 @@ def model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
     return ModelJoint(joint.name, offset, still, "free" if joint.turns else "fixed")
 
 
-def _path(clip: Clip, at: list[int], scale: float) -> Array:
-    """Where the end is, seen from what the base hangs from, (m, 3)."""
+def _path(clip: Clip, at: list[int], scale: float) -> tuple[Array, Array]:
+    """Where the end is, seen from what the base hangs from, (m, 3), and its turn, (m, 3, 3)."""
     motion = clip_motion(clip, scale)
     place = np.zeros((len(clip.frames), 3))
+    turn = motion.turns[:, at[-1]]
     for index in reversed(at[1:]):
-        place = motion.offsets[:, index] + place
-        place = (motion.turns[:, clip.joints[index].parent] @ place[..., None])[..., 0]
-    return place
+        parent = motion.turns[:, clip.joints[index].parent]
+        place = (parent @ (motion.offsets[:, index] + place)[..., None])[..., 0]
+        turn = parent @ turn
+    return place, turn
 
 
 def inspect(path: Path) -> Inspection:

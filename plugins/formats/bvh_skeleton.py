@@ -19,7 +19,7 @@ import numpy as np
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Motion
 from limbik.core.frames import Y_UP
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.skeleton import Limb, Skeleton
 from limbik.plugins.formats.bvh import BvhJoint, Clip, read_bvh
 from limbik.plugins.formats.bvh_chain import (
@@ -46,12 +46,14 @@ class ClipSkeleton(Skeleton):
         scale: Scene lengths a length of the clip.
         frames: The numbers of the frames in the file, as text.
         places: World positions of all joints in the clip's own motion, (m, n, 3) [length].
+        axes: Their world rotations, (m, n, 3, 3).
     """
 
     clip: Clip = field(kw_only=True)
     scale: float = field(kw_only=True)
     frames: tuple[str, ...] = field(kw_only=True)
     places: Array = field(kw_only=True)
+    axes: Array = field(kw_only=True)
 
     def limb(self, base: str, end: str) -> ModelLimb:
         """Cut out a chain; its goals are the end's path in the clip."""
@@ -77,6 +79,7 @@ class ClipSkeleton(Skeleton):
             goals=self.places[:, way[-1]],
             goal_names=self.frames,
             frame_time=self.clip.frame_time,
+            goal_turns=matrix_to_hpb(self.axes[:, way[-1]] @ limb.join.frames[-1]),
         )
 
     def _offset(self, index: int) -> Array:
@@ -119,6 +122,12 @@ def read_skeleton(model: FramesModel, folder: Path) -> ClipSkeleton:
     if not len(clip.frames):
         raise InputError(Fault("range", "the clip has no frames", "bvh"))
     motion = clip_motion(clip, model.scale)
-    places, _ = motion.world()
-    frames = tuple(map(str, numbers))
-    return ClipSkeleton(motion, clip=clip, scale=model.scale, frames=frames, places=places)
+    places, axes = motion.world()
+    return ClipSkeleton(
+        motion,
+        clip=clip,
+        scale=model.scale,
+        frames=tuple(map(str, numbers)),
+        places=places,
+        axes=axes,
+    )
