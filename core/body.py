@@ -242,7 +242,8 @@ class _Moves:
 
         Args:
             solution: Of the limb.
-            offsets, turns: Of the skeleton's joints relative to their parents.
+            offsets: Of the skeleton's joints in their parents' frames, (n, 3) [length].
+            turns: Of the skeleton's joints relative to their parents, (n, 3, 3).
             found: What is changed.
         """
         positions, rotations = found.positions, found.rotations

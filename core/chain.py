@@ -209,10 +209,10 @@ class Chain:
         object.__setattr__(found, "base_turn", turn)
         object.__setattr__(found, "base_rotation", axes)
         places, turns = self.rest_pose
-        turn = axes @ self.base_rotation.T
+        change = axes @ self.base_rotation.T
         found.__dict__["rest_pose"] = (
-            position + (places - np.array(self.base_position)) @ turn.T,
-            turn @ turns,
+            position + (places - np.array(self.base_position)) @ change.T,
+            change @ turns,
         )
         return found
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
+from zipfile import BadZipFile, ZipFile
 from zlib import error as zlib_error
 
 import numpy as np
@@ -18,6 +18,7 @@ from limbik.core.yamlscalars import ScalarFault, plain_scalar
 COLUMNS = ("name", "x", "y", "z")
 ARRAYS = ("goals", "positions")
 MOST_GOALS = 1_000_000
+MOST_BYTES = 500_000_000
 
 
 @dataclass
@@ -77,6 +78,9 @@ def read_goal_arrays(path: Path, array: str | None) -> GoalTable:
     """
     table, shown = GoalTable(), str(path)
     try:
+        if message := _too_large(path):
+            table.faults.append(Fault("too-large", message, file=shown))
+            return table
         with np.load(path, allow_pickle=False) as file:
             if not isinstance(file, np.lib.npyio.NpzFile):
                 raise ValueError("not an archive")
@@ -87,6 +91,13 @@ def read_goal_arrays(path: Path, array: str | None) -> GoalTable:
     except (ValueError, EOFError, BadZipFile, zlib_error):
         table.faults.append(Fault("npz", "this is no NPZ file of plain arrays", file=shown))
     return table
+
+
+def _too_large(path: Path) -> str:
+    """Say so if a file's arrays would fill the memory, however small they are packed."""
+    with ZipFile(path) as archive:
+        size = sum(member.file_size for member in archive.infolist())
+    return f"its arrays hold {size} bytes, the limit is {MOST_BYTES}" if size > MOST_BYTES else ""
 
 
 def _read_arrays(file: Any, array: str | None, shown: str, table: GoalTable) -> None:
@@ -105,7 +116,8 @@ def _read_arrays(file: Any, array: str | None, shown: str, table: GoalTable) -> 
         message = f"must hold 1 to {MOST_GOALS} goals, not {len(places)}"
     elif not (np.abs(places) <= FARTHEST).all():  # false for NaN too
         row = int(np.flatnonzero(~(np.abs(places) <= FARTHEST).all(axis=1))[0])
-        message = f"every number must be between -{FARTHEST:g} and {FARTHEST:g}; row {row} is not"
+        span = f"-{FARTHEST:g} and {FARTHEST:g}"
+        message = f"must hold numbers between {span}; row {row}, counted from 0, does not"
     if message:
         table.faults.append(Fault("array", f"the array '{found}' {message}", file=shown))
         return

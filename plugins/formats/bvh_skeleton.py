@@ -13,6 +13,7 @@ the pose the clip has then: joints of no chain move as they do in the clip.
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -49,6 +50,7 @@ class ClipSkeleton(Skeleton):
         axes: Their world rotations, (m, n, 3, 3).
     """
 
+    whole: ClassVar[str] = "clip"
     clip: Clip = field(kw_only=True)
     scale: float = field(kw_only=True)
     frames: tuple[str, ...] = field(kw_only=True)

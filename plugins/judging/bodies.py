@@ -14,7 +14,7 @@ from limbik.core.bodyscene import BodyScene, Part
 from limbik.core.errors import SceneError
 from limbik.core.pole import Pole
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.scene import Scene
 from limbik.core.skeleton import WORLD
 from limbik.core.solution import Solution
@@ -51,7 +51,11 @@ def _alone(part: Part, found: Sequence[BodySolution], solutions: Sequence[Soluti
     pole = part.scene.pole
     if pole is not None:
         pole = _pole(part, pole, found, solutions)
-    return replace(part.scene, chain=chain, goals=goals, pole=pole)
+    turns = part.scene.goal_turns
+    if turns is not None:
+        axes = np.array([s.chain.base_rotation for s in solutions])
+        turns = matrix_to_hpb(axes[0] @ axes.swapaxes(-1, -2) @ hpb_to_matrix(turns))
+    return replace(part.scene, chain=chain, goals=goals, pole=pole, goal_turns=turns)
 
 
 def _seen(solution: Solution, place: Array, first: Solution) -> Array:

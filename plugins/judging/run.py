@@ -34,6 +34,7 @@ class Run:
         follow: Whether each goal was solved from the pose before it.
         rate: Goals a second [1/s].
         solution: With a leading goal axis.
+        turned: Whether the goals turn a pole rotor.
     """
 
     solver: Solver
@@ -42,6 +43,7 @@ class Run:
     follow: bool
     rate: float
     solution: Solution
+    turned: bool = False
 
     @property
     def chain(self) -> Chain:
@@ -78,7 +80,13 @@ class Run:
         return bool(np.isfinite(self.chain.high[:-1]).any())
 
     def solve(self, goals: Array, solver: Solver | None = None) -> Solution:
-        """Solve other goals the way the scene does."""
+        """Solve other goals the way the scene does.
+
+        Raises:
+            NotJudged: The goals turn a rotor, and other goals have no turns.
+        """
+        if self.turned:
+            raise NotJudged("goals that turn a pole rotor are not solved in another order")
         chosen = self.solver if solver is None else solver
         many = chosen.follow if self.follow else chosen.solve_many
         return many(goals, fk_offsets=self.fk_offsets)
@@ -95,7 +103,8 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     require_own_solver(scene, "limbik judge")
     solver = scene_solver(scene, registry)
     solution = solve_part(solver, scene, slice(None))
-    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)
+    turned = scene.goal_turns is not None
+    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution, turned)
 
 
 def pose_difference(run: Run, first: Array, second: Array) -> float:

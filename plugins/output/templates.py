@@ -16,10 +16,15 @@ TEMPLATES = (
     "leg-pole",
     "planar",
     "spine",
+    "walk",
     "weld",
 )
-# What a scene is read with.
-_WITH_FILES = {"arm7": "arm7.urdf", "body": "humanoid.urdf", "humanoid": "humanoid.urdf"}
+_WITH_FILES = {  # what a scene is read with
+    "arm7": "arm7.urdf",
+    "body": "humanoid.urdf",
+    "humanoid": "humanoid.urdf",
+    "walk": "walk.bvh",
+}
 SCHEMA_FILE = "limbik.schema.json"
 
 
