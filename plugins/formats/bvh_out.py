@@ -51,6 +51,7 @@ def clip_of(motion: Motion) -> Clip:
 
     The roots get position channels, the other joints their lasting offsets.
     """
+    motion = _depth_first(motion)
     zero = _world_zero(motion)
     turned = motion.turns @ zero.transpose(0, 2, 1)
     joints: list[BvhJoint] = []
@@ -74,6 +75,27 @@ def clip_of(motion: Motion) -> Clip:
         joints.append(BvhJoint(name, parent, (x, y, z), moves, _ORDER, at, channels, site, 0))
         width += count
     return Clip("", tuple(joints), np.concatenate(columns, axis=1), motion.frame_time)
+
+
+def _depth_first(motion: Motion) -> Motion:
+    """Return a motion with its joints in the order a clip lists them and their channels."""
+    children: dict[int, list[int]] = {}
+    for index, parent in enumerate(motion.parents):
+        children.setdefault(parent, []).append(index)
+    order: list[int] = []
+    waiting = children[-1][::-1]
+    while waiting:
+        order.append(waiting.pop())
+        waiting += children.get(order[-1], [])[::-1]
+    place = {index: k for k, index in enumerate(order)} | {-1: -1}
+    return Motion(
+        tuple(motion.names[index] for index in order),
+        tuple(place[motion.parents[index]] for index in order),
+        motion.offsets[:, order],
+        motion.turns[:, order],
+        motion.zero[order],
+        motion.frame_time,
+    )
 
 
 def _world_zero(motion: Motion) -> Array:
