@@ -72,6 +72,16 @@ class Solver:
         """Return a solver of the same kind with some settings changed."""
         return Solver(self.chain, self._altered(options), self.registry)
 
+    def mirrored(self) -> "Solver":
+        """Return the solver of the chain mirrored in the world's YZ plane (M-14).
+
+        It answers mirrored goals with the mirrored poses.
+        """
+        from limbik.core.mirror import mirrored_settings
+
+        settings = mirrored_settings(self.settings, self.strategies)
+        return Solver(self.chain.mirrored(), settings, self.registry)
+
     def moved(self, position: Array, rotation: Array) -> "Solver":
         """Return this solver for its chain with the base elsewhere, in a few microseconds.
 

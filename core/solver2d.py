@@ -211,6 +211,26 @@ class Solver2D(Solver):
             )
         return found
 
+    def mirrored(self) -> "Solver2D":
+        """Return the solver of the mirrored chain, the pole mirrored too; a bound one stays so."""
+        from limbik.core.mirror import mirrored_settings
+
+        x, y, z = self.pole.position
+        found = Solver2D(
+            self.chain.mirrored(),
+            mirrored_settings(self.settings, self.strategies),
+            self.registry,
+            pole=self.pole.model_copy(update={"position": (-x, y, z)}),
+        )
+        ours = self._planar
+        found._fixed = (
+            *found._fixed[:2],
+            found._planar._replace(
+                keeps_shape=ours.keeps_shape, pole_turn=-ours.pole_turn, bound=ours.bound
+            ),
+        )
+        return found
+
     def moved(self, position: Array, rotation: Array) -> "Solver2D":
         """Return this solver for its chain with the base elsewhere; the pole stays."""
         found = super().moved(position, rotation)
