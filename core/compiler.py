@@ -34,6 +34,8 @@ _errors: Any = numba.core.errors
 
 # No fastmath: NaN must stay visible. numpy's error model: a division by zero gives inf or NaN.
 _OPTIONS = {"nogil": True, "error_model": "numpy"}
+# LLVM's first level: the code is as fast as that of the third, and compiled a seventh sooner.
+_QUICK = type(_config.OPT)(1)
 _LOCK = RLock()
 _COMPILED: dict[int, tuple[Any, Any]] = {}
 _NATIVE: dict[tuple[str, Strategy], tuple[int, Any]] = {}
@@ -53,7 +55,8 @@ def compiled_entry(entry: Entry) -> Any:
 def direct(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
     """Return the entrance of a compiled function for arguments of the types of these."""
     types = tuple(_typeof(argument) for argument in arguments)
-    dispatcher.compile(types)
+    with _setting("OPT", _QUICK):
+        dispatcher.compile(types)
     return dispatcher.overloads[types].entry_point
 
 
@@ -61,7 +64,7 @@ def _cached(function: Callable[..., Any], place: Path | None) -> Any:
     """Make a dispatcher whose machine code is kept in a folder, or nowhere if None."""
     if place is None:
         return _njit(**_OPTIONS)(function)
-    with _cache_folder(place):
+    with _setting("CACHE_DIR", str(place)):  # read once, when a function is decorated
         try:
             return _njit(cache=True, **_OPTIONS)(function)
         except RuntimeError:  # "no locator available": numba could not write there after all
@@ -69,15 +72,15 @@ def _cached(function: Callable[..., Any], place: Path | None) -> Any:
 
 
 @contextmanager
-def _cache_folder(place: Path) -> Iterator[None]:
-    """Let numba choose a cache folder; it does so once, when a function is decorated."""
+def _setting(name: str, value: Any) -> Iterator[None]:
+    """Change a setting of numba for a while: it is everybody's."""
     with _LOCK:
-        before = _config.CACHE_DIR
-        _config.CACHE_DIR = str(place)
+        before = getattr(_config, name)
+        setattr(_config, name, value)
         try:
             yield
         finally:
-            _config.CACHE_DIR = before
+            setattr(_config, name, before)
 
 
 def native(slot: str, strategy: Strategy) -> int:
@@ -126,7 +129,8 @@ def _compile(slot: Slot, strategy: Strategy) -> tuple[int, Any]:
     dispatcher = _cached(_wrapper(slot, strategy, unique), place)
     signature = _types.none(*_signature(slot))
     try:
-        dispatcher.compile(signature)
+        with _setting("OPT", _QUICK):
+            dispatcher.compile(signature)
         compiled = dispatcher.get_compile_result(signature)
     except Exception as error:  # the compiler fails in more ways than by its own errors
         message = f"its kernel does not compile: {_reason(error)}"
@@ -166,16 +170,29 @@ def _compiled(function: Any) -> Any:
     """Compile a plain function or an entry, and all plain functions it calls, once.
 
     limbik's kernels do without numba's memory runtime. None gets wrappers for calls from outside,
-    which took a third of the time to compile.
+    which took a third of the time to compile. One that takes a record of arrays becomes part of
+    its caller: a call would copy every field of every array, which took a third of a solve.
     """
     plain = cast(FunctionType, function.function if isinstance(function, Entry) else function)
     if id(plain) not in _COMPILED:
         copy, fill = sources.rebuilt(plain, "kernel", _compiled)
-        runtime = isinstance(function, Entry) or not sources.is_own(plain)
-        inner = _njit(_nrt=runtime, no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)
+        own = sources.is_own(plain)
+        inner = _njit(
+            _nrt=isinstance(function, Entry) or not own,
+            forceinline=own and _takes_record(plain),
+            no_cpython_wrapper=True,
+            no_cfunc_wrapper=True,
+            **_OPTIONS,
+        )
         _COMPILED[id(plain)] = (plain, inner(copy))
         fill()
     return _COMPILED[id(plain)][1]
+
+
+def _takes_record(function: FunctionType) -> bool:
+    """Whether a function has a NamedTuple among its arguments, by its annotations."""
+    hints = (hint for name, hint in function.__annotations__.items() if name != "return")
+    return any(hasattr(hint, "_fields") for hint in hints)
 
 
 def _number_type(field: Parameter) -> Any:
