@@ -49,13 +49,13 @@ def off_line(places: Array) -> Array:
     line = places[:, 2] - places[:, 0]
     line = line / np.linalg.norm(line, axis=1, keepdims=True)
     knee = places[:, 1] - places[:, 0]
-    return knee - (knee * line).sum(-1, keepdims=True) * line
+    return np.asarray(knee - (knee * line).sum(-1, keepdims=True) * line)
 
 
 def angles_between(first: Array, second: Array) -> Array:
     """Angles between vectors (m, 3) [deg]."""
     sine = np.linalg.norm(np.cross(first, second), axis=1)
-    return np.degrees(np.arctan2(sine, (first * second).sum(1)))
+    return np.asarray(np.degrees(np.arctan2(sine, (first * second).sum(1))))
 
 
 def report(scene: BodyScene, bake: BodyBake) -> None:
