@@ -1,16 +1,14 @@
 """Solve the goals of a scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
-from limbik.core.solution import Continuity, Solution, Status
+from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import WholeSolution, prepare
+from limbik.core.whole import WholeSolver, prepare, singles
 
 
 def solve_scene(
@@ -30,7 +28,7 @@ def solve_scene(
         PluginError: A strategy failed.
     """
     if scene.solver is not None:
-        return list(_singles(solve_goals(scene, registry)))
+        return list(singles(solve_goals(scene, registry)))
     if not trace:
         found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]
@@ -110,25 +108,13 @@ def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
     return solver.bind() if scene.bind else solver
 
 
+def single_solver(scene: Scene, registry: Registry | None = None) -> Solver | WholeSolver:
+    """Return whatever solver a scene asks for, to be called goal by goal; see `scene_solver`."""
+    if scene.solver is not None:
+        return WholeSolver(scene.solver, scene.chain, scene.settings)
+    return scene_solver(scene, registry)
+
+
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:
     """Whether every goal is reached; with IK switched off none is pursued."""
     return not scene.settings.ik or all(solution.reached for solution in solutions)
-
-
-def _singles(many: Solution) -> Iterator[Solution]:
-    """Take a solution with a leading goal axis apart."""
-    for k in range(len(many.goal)):
-        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
-        yield WholeSolution(
-            many.chain,
-            many.goal[k],
-            many.angles[k],
-            many.positions[k],
-            many.rotations[k],
-            int(np.asarray(many.iterations)[k]),
-            float(np.asarray(many.distance)[k]),
-            Status(int(np.asarray(many.status)[k])),
-            many.bend_vector[k],
-            float(np.asarray(many.bend_angle)[k]),
-            notes=notes,
-        )

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
+from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import hpb_to_matrix
 from limbik.core.solver import Solver
@@ -23,7 +24,7 @@ from limbik.plugins.judging import (
     soundness,
 )
 from limbik.plugins.judging.catalogue import BY_NAME, METRICS
-from limbik.plugins.judging.run import NotJudged, Run, turn_between
+from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import log_jerk
 
 Array = NDArray[np.float64]

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.body import BodySolution, chain_solutions
+from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Inspection
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
@@ -53,6 +55,13 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
         console.print(Text(f"{left_out} more joints: see --json or --csv", "dim"))
     reached = sum(bool(solution.reached) for solution in solutions)
     console.print(f"{reached} of {len(solutions)} goals reached")
+
+
+def print_body(scene: BodyScene, found: Sequence[BodySolution]) -> None:
+    """Print one table a chain, in the order they were solved."""
+    for part, solutions in zip(scene.parts, chain_solutions(found).values(), strict=True):
+        new_console().print(Text(f"\n{part.name}", "bold"))
+        print_solutions(part.scene, solutions)
 
 
 def _fitting(columns: dict[str, list[str]], room: int) -> tuple[list[str], int]:
@@ -134,9 +143,11 @@ def print_inspection(inspection: Inspection) -> None:
         console.print(Text(f"note: {note}", "yellow"))
 
 
-def print_metrics(metrics: dict[str, Any]) -> None:
-    """Print what a baked motion is like, in a few lines."""
+def print_metrics(metrics: dict[str, Any], chain: str = "") -> None:
+    """Print what a baked motion is like, in a few lines; under the chain's name if it has one."""
     console = new_console()
+    if chain:
+        console.print(Text(chain, "bold"))
     frames, reached = metrics["frames"], metrics["reached"]
     style = "green" if reached == frames else "red"
     worst = f"largest distance {metrics['worst_distance']:.2g}"

@@ -7,6 +7,7 @@ from limbik.core.errors import Fault, InputError
 TEMPLATES = (
     "arm",
     "arm7",
+    "body",
     "cosine-arm",
     "finger",
     "humanoid",
@@ -15,9 +16,15 @@ TEMPLATES = (
     "leg-pole",
     "planar",
     "spine",
+    "walk",
     "weld",
 )
-_WITH_FILES = {"arm7": "arm7.urdf", "humanoid": "humanoid.urdf"}  # what a scene is read with
+_WITH_FILES = {  # what a scene is read with
+    "arm7": "arm7.urdf",
+    "body": "humanoid.urdf",
+    "humanoid": "humanoid.urdf",
+    "walk": "walk.bvh",
+}
 SCHEMA_FILE = "limbik.schema.json"
 
 
