@@ -10,11 +10,10 @@ from limbik.core.formats import Bake
 from limbik.core.mirror import mirrored_solution
 from limbik.core.motion import motion_metrics
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
+from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
-from limbik.core.solving import scene_solver, solve_part
-from limbik.core.whole import prepare
+from limbik.core.solving import scene_solver, solve_part, solve_whole
 
 BLOCK: Final = 500  # goals solved between two reports of progress
 FRAME_TIME: Final = 1.0 / 30.0
@@ -50,9 +49,11 @@ def bake_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
+    require_goals(scene)
     if scene.solver is not None:
-        parts = [prepare(scene.solver, scene.chain, scene.settings)(scene.goals, scene.follow)]
+        parts = [solve_whole(scene, scene.solver)]
     else:
         parts = _blocks(scene, registry, progress)
     solution = _joined(parts)

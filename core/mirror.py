@@ -16,6 +16,7 @@ from limbik.core.chain import Chain
 from limbik.core.frames import Y_UP, mirror_hpb
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
+from limbik.core.whole import PoseSolution
 
 _WORDS: Final = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 _LETTERS: Final = (("L", "R"), ("l", "r"))
@@ -43,6 +44,8 @@ def mirrored_solution(solution: Solution) -> Solution:
         continuity=None,
         trace=None,
     )
+    if isinstance(mirrored, PoseSolution):
+        return replace(mirrored, goal_rotation=Y_UP.rotations(mirrored.goal_rotation))
     return _mirrored_plane(mirrored) if isinstance(mirrored, PlanarSolution) else mirrored
 
 

@@ -15,7 +15,7 @@ follow: false                  # optional: solve the goals as a path
 judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
 solver: 3d                     # optional: 2d bends in the plane of base, goal and pole ...
 pole: {position: [0, 9, 9]}    # ... which 2d needs; see `limbik.core.scenemodel.PoleModel`
-goals:                         # a list, or {csv: goals.csv}
+goals:                         # a list, or {csv: goals.csv}; a trajectory does without
   - {name: mouth, position: [1, 2, 3]}
 ```
 
@@ -45,12 +45,12 @@ from limbik.core.pole import Pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
-from limbik.core.sceneplane import solver_faults
+from limbik.core.sceneplane import solver_faults, turn_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
-from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
+from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, PoseBatch, prepare
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
@@ -158,7 +158,8 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     chain, solver = body.chain if body else None, None
     try:
         chain = chain or _chain(model)
-        solver = None if faults else _solver(model, chain, registry)
+        solver, turns_end = (None, False) if faults else _solver(model, chain, registry)
+        faults += () if faults else turn_faults(model, turns_end, document)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
     names, goals, goal_faults = _goals(model, document, folder)
@@ -202,11 +203,24 @@ def require_own_solver(scene: Scene, what: str) -> None:
         raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
 
 
+def require_goals(scene: Scene) -> None:
+    """Refuse a scene that has a trajectory and no goals.
+
+    Raises:
+        SceneError: It has none.
+    """
+    if not len(scene.goals):
+        hint = "'limbik trajectory' solves its trajectory"
+        fault = scene.document.fault("missing-key", "the scene has no goals", hint=hint)
+        raise SceneError([fault])
+
+
 def _turns(model: SceneModel) -> Array | None:
     """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
-    if isinstance(model.goals, CsvModel) or not any(goal.rotation for goal in model.goals):
+    turns = [] if isinstance(model.goals, CsvModel) else [goal.turn for goal in model.goals]
+    if all(turn is None for turn in turns):
         return None
-    return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
+    return np.array([np.full(3, np.nan) if turn is None else turn for turn in turns])
 
 
 def _choices(content: Any) -> Iterator[tuple[str, Any]]:
@@ -219,7 +233,10 @@ def _choices(content: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _checkable(content: Any) -> Any:
-    """Leave out choices without a strategy's name: `_strategy_faults` has them already."""
+    """Leave out choices without a strategy's name: `_strategy_faults` has them already.
+
+    A scene with a trajectory needs no goals.
+    """
     nameless = [
         slot
         for slot, choice in _choices(content)
@@ -227,6 +244,8 @@ def _checkable(content: Any) -> Any:
         and isinstance(choice, dict)
         and not isinstance(choice.get("use"), str)
     ]
+    if isinstance(content, dict) and "trajectory" in content:
+        content = {"goals": [], **content}
     if not nameless:
         return content
     options = {key: value for key, value in content["options"].items() if key not in nameless}
@@ -307,13 +326,14 @@ def _chain(model: SceneModel) -> Chain:
     return Chain([_joint(joint) for joint in model.chain.joints], base.position, turn)
 
 
-def _solver(model: SceneModel, chain: Chain, registry: Registry | None) -> Bound | None:
-    """Bind the scene's solver; it refuses chains it does not solve."""
+def _solver(
+    model: SceneModel, chain: Chain, registry: Registry | None
+) -> tuple[Bound | None, bool]:
+    """Bind the scene's solver; it refuses chains it does not solve. Tell if it turns the end."""
     if model.solver in OWN_SOLVERS:
-        return None
+        return None, False
     bound = (registry or Registry()).bind(SOLVER.name, model.solver)
-    prepare(bound, chain, model.options)
-    return bound
+    return bound, isinstance(prepare(bound, chain, model.options), PoseBatch)
 
 
 def _joint(joint: JointModel) -> Joint:
@@ -353,8 +373,8 @@ def _goals(
         return tuple(table.names), np.array(table.positions).reshape(-1, 3), table.faults
     given = [goal.name for goal in model.goals]
     faults = list(_twice(given, ("goals",), "goal", document))
-    if not model.goals:
+    if not model.goals and "goals" in document.content:
         message = "at least one goal is needed"
         faults.append(document.fault("empty", message, ("goals",)))
     names = tuple(name or str(number) for number, name in enumerate(given, 1))
-    return names, np.array([goal.position for goal in model.goals]).reshape(-1, 3), faults
+    return names, np.array([goal.place for goal in model.goals]).reshape(-1, 3), faults

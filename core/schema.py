@@ -52,10 +52,10 @@ def _take_in(given: SceneInput, definitions: dict[str, Any]) -> str:
 
 
 def _need_goals_or_a_clip(schema: dict[str, Any], clips: list[str]) -> None:
-    """Ask for goals except where the chain's file has them."""
+    """Ask for goals except where the chain's file has them, or a trajectory takes their place."""
     schema["required"] = [key for key in schema["required"] if key != "goals"]
     held = [{"properties": {"chain": {"required": [name]}}} for name in clips]
-    schema["anyOf"] = [{"required": ["goals"]}, *held]
+    schema["anyOf"] = [{"required": ["goals"]}, {"required": ["trajectory"]}, *held]
 
 
 def _choice(slot: str, strategies: list[Strategy]) -> dict[str, Any]:

@@ -1,16 +1,16 @@
 """Solve the goals of a scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
+from limbik.core.binding import Bound
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
-from limbik.core.solution import Continuity, Solution, Status
+from limbik.core.rotation import hpb_to_matrix
+from limbik.core.scene import Scene, require_goals
+from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import WholeSolution, prepare
+from limbik.core.whole import PoseBatch, prepare
 
 
 def solve_scene(
@@ -28,10 +28,12 @@ def solve_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
+    require_goals(scene)
     if scene.solver is not None:
-        batch = prepare(scene.solver, scene.chain, scene.settings)
-        return list(_singles(batch(scene.goals, scene.follow)))
+        found = solve_whole(scene, scene.solver)
+        return [found.single(row) for row in range(len(scene.goals))]
     solver = scene_solver(scene, registry)
     if not trace:
         found = solve_part(solver, scene, slice(None))
@@ -44,6 +46,19 @@ def solve_scene(
             asked["goal_turn"] = scene.goal_turns[row]
         solutions.append(solver.solve(goal, trace=True, **asked))
     return solutions
+
+
+def solve_whole(scene: Scene, solver: Bound) -> Solution:
+    """Solve all goals of a scene with a whole solver of a plug-in, as a path if the scene says so.
+
+    Args:
+        scene: The scene.
+        solver: The solver; one that does not turn the end leaves the goals' orientations aside.
+    """
+    batch = prepare(solver, scene.chain, scene.settings)
+    if isinstance(batch, PoseBatch) and scene.goal_turns is not None:
+        return batch.solve_poses(scene.goals, hpb_to_matrix(scene.goal_turns), scene.follow)
+    return batch(scene.goals, scene.follow)
 
 
 def solve_part(
@@ -87,22 +102,3 @@ def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:
     """Whether every goal is reached; with IK switched off none is pursued."""
     return not scene.settings.ik or all(solution.reached for solution in solutions)
-
-
-def _singles(many: Solution) -> Iterator[Solution]:
-    """Take a solution with a leading goal axis apart."""
-    for k in range(len(many.goal)):
-        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
-        yield WholeSolution(
-            many.chain,
-            many.goal[k],
-            many.angles[k],
-            many.positions[k],
-            many.rotations[k],
-            int(np.asarray(many.iterations)[k]),
-            float(np.asarray(many.distance)[k]),
-            Status(int(np.asarray(many.status)[k])),
-            many.bend_vector[k],
-            float(np.asarray(many.bend_angle)[k]),
-            notes=notes,
-        )

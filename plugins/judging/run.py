@@ -8,7 +8,7 @@ import numpy as np
 from limbik.core.chain import Chain
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scene import Scene, require_own_solver
+from limbik.core.scene import Scene, require_goals, require_own_solver
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
@@ -97,6 +97,7 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     """
     rate = RATE if scene.judge is None else scene.judge.rate
     require_own_solver(scene, "limbik judge")
+    require_goals(scene)
     solver = scene_solver(scene, registry)
     solution = solve_part(solver, scene, slice(None))
     return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core.errors import Fault, InputError, SceneError
+from limbik.core.rotation import hpb_to_matrix
 from limbik.core.scene import Scene
 from limbik.core.trajectorymodel import LimitsModel, PointModel, StepModel, TrajectoryModel
 from limbik.core.wording import near_match
@@ -106,7 +107,11 @@ class _Reader:
         if name not in self.scene.goal_names:
             message = f"it needs a position: no goal is called '{name}'"
             raise SceneError(self.scene.document.fault("missing-key", message, path))
-        goal = self.scene.goals[self.scene.goal_names.index(name)]
+        row = self.scene.goal_names.index(name)
+        goal, turns = self.scene.goals[row], self.scene.goal_turns
+        oriented = given.euler is not None or given.quaternion is not None
+        if not oriented and turns is not None and not np.isnan(turns[row]).any():
+            return KeyPoint.from_rotation(goal, hpb_to_matrix(turns[row]), name)
         return KeyPoint(goal, point.quaternion, name)
 
     def _angles(self, given: PointModel, path: KeyPath) -> Any:

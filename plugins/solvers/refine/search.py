@@ -1,0 +1,201 @@
+"""Solving pose goals: descents from the pose before, then from starts spread over the ranges."""
+
+from math import inf, isnan, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from limbik.core.jit import entry, kernel
+from limbik.core.kernels.rotation import (
+    matrix,
+    norm,
+    rotate,
+    rotate_back,
+    subtract,
+    vector,
+    wrap_angle,
+)
+from limbik.core.rotation import Array
+from limbik.plugins.solvers.refine.descent import Goal, Left, descend
+from limbik.plugins.solvers.refine.hinges import Hinges
+from limbik.plugins.solvers.refine.place import ANGLE, BEST, NEAR, WIDTH
+
+# Numbers of `limbik.core.solution.Status`.
+REACHED, STOPPED, OUT_OF_REACH, BLOCKED = 0, 1, 2, 3
+STEADINESS = 0.002  # share of the error by which a later start must be nearer
+COMPARED = 8  # folds found on a path before the nearest to the pose before is taken
+UNLIMITED_STARTS = 24
+
+
+class Effort(NamedTuple):
+    """How exactly and how long to search."""
+
+    tolerance: float
+    """Distance that counts as reached [length]."""
+    angle: float
+    """Angle that counts as reached [rad]."""
+    precision: float
+    """Share of the size and angle [rad] aimed at."""
+    size: float
+    """Length that counts as much as a radian."""
+    steps: int
+    starts: int
+
+
+@kernel
+def _is_met(left: Left, effort: Effort) -> bool:
+    return left.distance < effort.tolerance and left.angle < effort.angle
+
+
+@kernel
+def _copy(source: int, out: int, rows: Array) -> None:
+    for k in range(rows.shape[0]):
+        rows[k, out] = rows[k, source]
+
+
+@kernel
+def _spread(attempt: int, spacing: Array, hinges: Hinges, rows: Array) -> None:
+    """Write the angles of a start: evenly spread over the ranges, the middles first."""
+    for k in range(rows.shape[0]):
+        low, high = hinges.low[k], hinges.high[k]
+        share = (0.5 + attempt * spacing[k]) % 1.0
+        rows[k, ANGLE] = low + share * (high - low) if high < inf else 2.0 * pi * (share - 0.5)
+
+
+@kernel
+def _way(rows: Array) -> float:
+    """Return the largest turn from the pose before [rad]."""
+    way = 0.0
+    for k in range(rows.shape[0]):
+        way = max(way, abs(rows[k, ANGLE] - rows[k, NEAR]))
+    return way
+
+
+@kernel
+def _search(
+    goal: Goal,
+    effort: Effort,
+    hinges: Hinges,
+    spacing: Array,
+    compared: int,
+    rows: Array,
+    system: Array,
+) -> tuple[Left, int]:
+    """Leave the best pose in BEST: the first that reaches the goal, or the nearest of several.
+
+    Returns:
+        What is left, and the number of starts used; 0 if the pose before led to the goal.
+    """
+    _copy(NEAR, ANGLE, rows)
+    best = descend(goal, effort.precision, effort.steps, hinges, rows, system)
+    _copy(ANGLE, BEST, rows)
+    if _is_met(best, effort):
+        return best, 0
+    found, shortest = 0, inf
+    for attempt in range(effort.starts):
+        _spread(attempt, spacing, hinges, rows)
+        left = descend(goal, effort.precision, effort.steps, hinges, rows, system)
+        if _is_met(left, effort):
+            found += 1
+            way = _way(rows)
+            if found == 1 or way < shortest:
+                best, shortest = left, way
+                _copy(ANGLE, BEST, rows)
+            if found >= compared:
+                return best, attempt + 1
+        # Where no start reaches it, an earlier one stays the answer until a later is clearly nearer.
+        elif found == 0 and left.square < best.square * (1.0 - STEADINESS):
+            best = left
+            _copy(ANGLE, BEST, rows)
+    return best, effort.starts
+
+
+@kernel
+def _spans(goal: Goal, effort: Effort, hinges: Hinges, rows: Array) -> bool:
+    """Return whether the bones, were they free to fold, span the way to the goal.
+
+    Behind the last hinge nothing moves, so a pose of the end says where that hinge must be; it
+    must lie in the shell between the folded and the straight bones around the first.
+    """
+    last = rows.shape[0] - 1
+    total, longest = 0.0, 0.0
+    for k in range(1, last + 1 if goal.turning else last + 2):
+        bone = norm(vector(hinges.shift, k))
+        total += bone
+        longest = max(longest, bone)
+    target, slack = goal.place, effort.tolerance
+    if goal.turning:
+        hand = vector(hinges.shift, last + 1)
+        local = rotate_back(matrix(hinges.before, last + 1), hand)
+        target = subtract(target, rotate(goal.turned, local))
+        slack += effort.angle * norm(hand)
+    distance = norm(subtract(target, vector(hinges.shift, 0)))
+    return 2.0 * longest - total - slack <= distance <= total + slack
+
+
+@kernel
+def _why(
+    goal: Goal, effort: Effort, unlimited: Hinges, spacing: Array, rows: Array, system: Array
+) -> int:
+    """Return why a goal is not reached: what is proved, or `STOPPED`."""
+    if not _spans(goal, effort, unlimited, rows):
+        return OUT_OF_REACH
+    tries = Effort(
+        effort.tolerance,
+        effort.angle,
+        effort.precision,
+        effort.size,
+        effort.steps,
+        UNLIMITED_STARTS,
+    )
+    left, _ = _search(goal, tries, unlimited, spacing, 1, rows, system)
+    return BLOCKED if _is_met(left, effort) else STOPPED
+
+
+@entry
+def solve_goals(
+    hinges: Hinges,
+    effort: Effort,
+    spacing: Array,
+    goals: Array,
+    rotations: Array,
+    chained: bool,
+    near: Array,
+    angles: Array,
+    numbers: Array,
+) -> None:
+    """Solve many goals.
+
+    Args:
+        hinges: k hinges.
+        effort: How exactly and how long to search.
+        spacing: Steps of the spread starts, (k,), shares of the ranges.
+        goals: World positions, (m, 3) [length].
+        rotations: World rotations, (m, 3, 3); NaN where the orientation does not count.
+        chained: Whether each goal is solved from the pose of the one before.
+        near: The pose to start from, (k,) [rad]; with `chained` it becomes the last.
+        angles: OUT: (m, k) [rad], within the limits.
+        numbers: OUT: status, starts used beside the pose before, distance, angle, (m, 4).
+    """
+    count = near.shape[0]
+    rows, system = np.zeros((count, WIDTH)), np.zeros((9, 6))
+    free = np.full(count, inf)
+    unlimited = Hinges(hinges.axis, hinges.shift, hinges.before, -free, free)
+    for row in range(goals.shape[0]):
+        turned = matrix(rotations, row)
+        goal = Goal(vector(goals, row), turned, not isnan(turned[0][0]), effort.size)
+        for k in range(count):
+            rows[k, NEAR] = near[k]
+        left, used = _search(
+            goal, effort, hinges, spacing, COMPARED if chained else 1, rows, system
+        )
+        status = REACHED
+        for k in range(count):
+            angle = rows[k, BEST]
+            angles[row, k] = angle if hinges.high[k] < inf else near[k] + wrap_angle(angle - near[k])
+            if chained:
+                near[k] = angles[row, k]
+        if not _is_met(left, effort):
+            status = _why(goal, effort, unlimited, spacing, rows, system)
+        numbers[row, 0], numbers[row, 1] = status, used
+        numbers[row, 2], numbers[row, 3] = left.distance, left.angle
