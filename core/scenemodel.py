@@ -134,9 +134,9 @@ class GoalModel(Model):
         Turn | None,
         Field(description="in the world, HPB [deg]; for pose goals and 2D pole rotors"),
     ] = None
-    quaternion: Annotated[
-        Four | None, Field(description="w, x, y, z, instead of a rotation")
-    ] = None
+    quaternion: Annotated[Four | None, Field(description="w, x, y, z, instead of a rotation")] = (
+        None
+    )
     matrix: Annotated[
         Matrix | None, Field(description="4 x 4, instead of position and rotation")
     ] = None

@@ -109,6 +109,11 @@ class JointMotion:
         return _rates(self.samples.times, self.angles)
 
     @property
+    def is_posed(self) -> bool:
+        """Whether the orientation was solved for."""
+        return isinstance(self.solution, PoseSolution)
+
+    @property
     def orientation_error(self) -> Array:
         """Angle between the end's orientation and the one asked for, (m,) [rad]."""
         found = from_matrix(self.solution.rotations[:, -1])

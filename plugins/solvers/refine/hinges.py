@@ -10,6 +10,8 @@ from limbik.core.rotation import Array, hpb_to_matrix
 
 FIXED = 1e-9  # [rad]; an axis with a smaller range does not turn
 
+PARALLEL = 1e-9  # squared sine of axes that count as parallel
+
 
 class Hinges(NamedTuple):
     """k hinges, as the kernels take them.
@@ -28,6 +30,21 @@ class Hinges(NamedTuple):
     """(k,) [rad]; -inf where free."""
     high: Array
     """(k,) [rad]."""
+
+
+class Span(NamedTuple):
+    """What the bones, free to fold, can span: a shell about a point that stays.
+
+    A hinge's axis stays in place as it turns, so any point of it will do as its place; those where
+    neighbouring axes come nearest make the bones short and the shell tight.
+    """
+
+    start: Array
+    """On the first hinge's axis, world, (1, 3) [length]."""
+    hand: Array
+    """On the last hinge's axis, in the end's frame, (1, 3) [length]."""
+    bones: Array
+    """Sum and longest of the bones between the two, (2,) [length]."""
 
 
 class Layout(NamedTuple):
@@ -80,3 +97,35 @@ def read_hinges(chain: Chain) -> Layout:
         chain.high[turns],
     )
     return Layout(hinges, joints, axes, resting)
+
+
+def read_span(hinges: Hinges) -> Span:
+    """Find the shell that the bones span."""
+    own = np.eye(3)[[1, 0, 2]][hinges.axis]  # heading turns about y, pitch about x
+    ways = np.einsum("kij,kj->ki", hinges.before[:-1], own)
+    at = np.zeros(len(own))
+    for k in range(1, len(own)):
+        first, at[k] = _feet(own[k - 1], hinges.shift[k], ways[k], at[k - 1])
+        at[0] = first if k == 1 else at[0]
+    behind = at[:, None] * own  # the places in the frames behind the hinges
+    before = hinges.shift[:-1] + at[:, None] * ways
+    bones = np.linalg.norm(before[1:] - behind[:-1], axis=1)
+    hand = (behind[-1] - hinges.shift[-1]) @ hinges.before[-1]
+    return Span(before[:1].copy(), hand[None], np.array([bones.sum(), bones.max()]))
+
+
+def _feet(first: Array, origin: Array, second: Array, at: float) -> tuple[float, float]:
+    """Return where on two lines their common perpendicular stands.
+
+    Args:
+        first: Unit direction of the line through 0.
+        origin: A point of the second line.
+        second: Its unit direction.
+        at: Where on the first line the foot is if they are parallel.
+    """
+    lean = float(first @ second)
+    square = 1.0 - lean * lean
+    if square < PARALLEL:
+        return at, float((at * first - origin) @ second)
+    one, two = float(first @ origin), float(second @ origin)
+    return (one - lean * two) / square, (lean * one - two) / square

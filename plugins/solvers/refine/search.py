@@ -7,24 +7,25 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.rotation import (
+    add,
     matrix,
     norm,
     rotate,
-    rotate_back,
     subtract,
     vector,
     wrap_angle,
 )
 from limbik.core.rotation import Array
 from limbik.plugins.solvers.refine.descent import Goal, Left, descend
-from limbik.plugins.solvers.refine.hinges import Hinges
+from limbik.plugins.solvers.refine.hinges import Hinges, Span
 from limbik.plugins.solvers.refine.place import ANGLE, BEST, NEAR, WIDTH
 
 # Numbers of `limbik.core.solution.Status`.
 REACHED, STOPPED, OUT_OF_REACH, BLOCKED = 0, 1, 2, 3
 STEADINESS = 0.002  # share of the error by which a later start must be nearer
 COMPARED = 8  # folds found on a path before the nearest to the pose before is taken
-UNLIMITED_STARTS = 24
+FEW_STARTS = 2  # toward a goal that the bones do not span
+UNLIMITED_STARTS = 24  # to find out whether limits are the reason
 
 
 class Effort(NamedTuple):
@@ -111,50 +112,35 @@ def _search(
 
 
 @kernel
-def _spans(goal: Goal, effort: Effort, hinges: Hinges, rows: Array) -> bool:
+def _spans(goal: Goal, effort: Effort, span: Span) -> bool:
     """Return whether the bones, were they free to fold, span the way to the goal.
 
-    Behind the last hinge nothing moves, so a pose of the end says where that hinge must be; it
-    must lie in the shell between the folded and the straight bones around the first.
+    Behind the last hinge nothing moves, so a pose of the end says where that hinge must be.
     """
-    last = rows.shape[0] - 1
-    total, longest = 0.0, 0.0
-    for k in range(1, last + 1 if goal.turning else last + 2):
-        bone = norm(vector(hinges.shift, k))
-        total += bone
-        longest = max(longest, bone)
+    hand = vector(span.hand, 0)
+    total, longest = span.bones[0], span.bones[1]
     target, slack = goal.place, effort.tolerance
     if goal.turning:
-        hand = vector(hinges.shift, last + 1)
-        local = rotate_back(matrix(hinges.before, last + 1), hand)
-        target = subtract(target, rotate(goal.turned, local))
+        target = add(target, rotate(goal.turned, hand))
         slack += effort.angle * norm(hand)
-    distance = norm(subtract(target, vector(hinges.shift, 0)))
+    else:
+        total += norm(hand)
+        longest = max(longest, norm(hand))
+    distance = norm(subtract(target, vector(span.start, 0)))
     return 2.0 * longest - total - slack <= distance <= total + slack
 
 
 @kernel
-def _why(
-    goal: Goal, effort: Effort, unlimited: Hinges, spacing: Array, rows: Array, system: Array
-) -> int:
-    """Return why a goal is not reached: what is proved, or `STOPPED`."""
-    if not _spans(goal, effort, unlimited, rows):
-        return OUT_OF_REACH
-    tries = Effort(
-        effort.tolerance,
-        effort.angle,
-        effort.precision,
-        effort.size,
-        effort.steps,
-        UNLIMITED_STARTS,
+def _with_starts(effort: Effort, starts: int) -> Effort:
+    return Effort(
+        effort.tolerance, effort.angle, effort.precision, effort.size, effort.steps, starts
     )
-    left, _ = _search(goal, tries, unlimited, spacing, 1, rows, system)
-    return BLOCKED if _is_met(left, effort) else STOPPED
 
 
 @entry
 def solve_goals(
     hinges: Hinges,
+    span: Span,
     effort: Effort,
     spacing: Array,
     goals: Array,
@@ -168,6 +154,7 @@ def solve_goals(
 
     Args:
         hinges: k hinges.
+        span: What their bones can span.
         effort: How exactly and how long to search.
         spacing: Steps of the spread starts, (k,), shares of the ranges.
         goals: World positions, (m, 3) [length].
@@ -186,16 +173,21 @@ def solve_goals(
         goal = Goal(vector(goals, row), turned, not isnan(turned[0][0]), effort.size)
         for k in range(count):
             rows[k, NEAR] = near[k]
-        left, used = _search(
-            goal, effort, hinges, spacing, COMPARED if chained else 1, rows, system
-        )
-        status = REACHED
+        spanned = _spans(goal, effort, span)
+        tried = effort if spanned else _with_starts(effort, min(effort.starts, FEW_STARTS))
+        compared = COMPARED if chained else 1
+        left, used = _search(goal, tried, hinges, spacing, compared, rows, system)
         for k in range(count):
             angle = rows[k, BEST]
-            angles[row, k] = angle if hinges.high[k] < inf else near[k] + wrap_angle(angle - near[k])
+            angles[row, k] = (
+                angle if hinges.high[k] < inf else near[k] + wrap_angle(angle - near[k])
+            )
             if chained:
                 near[k] = angles[row, k]
-        if not _is_met(left, effort):
-            status = _why(goal, effort, unlimited, spacing, rows, system)
+        status = REACHED if _is_met(left, effort) else OUT_OF_REACH
+        if status != REACHED and spanned:
+            tried = _with_starts(effort, UNLIMITED_STARTS)
+            ideal, _ = _search(goal, tried, unlimited, spacing, 1, rows, system)
+            status = BLOCKED if _is_met(ideal, effort) else STOPPED
         numbers[row, 0], numbers[row, 1] = status, used
         numbers[row, 2], numbers[row, 3] = left.distance, left.angle

@@ -30,7 +30,7 @@ from limbik.core.solution import Status
 from limbik.core.solveinput import checked
 from limbik.core.strategy import Degrees, Strategy
 from limbik.core.whole import PoseBatch, PoseSolution, assemble
-from limbik.plugins.solvers.refine.hinges import read_hinges
+from limbik.plugins.solvers.refine.hinges import read_hinges, read_span
 
 NAME = "refine"
 LEAST_HINGES = 6
@@ -49,9 +49,9 @@ class Search(NamedTuple):
         float, Field(ge=0.0, le=1.0, description="of the orientation; 0 = position alone")
     ] = 1.0
     steps: Annotated[int, Field(ge=1, le=1000, description="most steps of a descent")] = 60
-    starts: Annotated[
-        int, Field(ge=0, le=100_000, description="tried beside the pose before")
-    ] = 100
+    starts: Annotated[int, Field(ge=0, le=100_000, description="tried beside the pose before")] = (
+        100
+    )
 
 
 class PoseSolver(PoseBatch):
@@ -86,6 +86,7 @@ class PoseSolver(PoseBatch):
         if count < LEAST_HINGES:
             message = f"needs {LEAST_HINGES} axes that turn, or more; this chain has {count}"
             raise ChainError(f"{NAME} {message}")
+        self._span = read_span(self._layout.hinges)
         self._spacing = _spacing(count)
 
     def solve(
@@ -160,9 +161,8 @@ class PoseSolver(PoseBatch):
             float(self.tolerance), float(self.angle), PRECISION, length, self.steps, self.starts
         )
         values, numbers = np.empty((len(goals), len(start))), np.empty((len(goals), 4))
-        hinges = self._layout.hinges
-        near = start.copy()
-        solve_goals(hinges, effort, self._spacing, goals, rotations, follow, near, values, numbers)
+        fixed = self._layout.hinges, self._span, effort, self._spacing
+        solve_goals(*fixed, goals, rotations, follow, start.copy(), values, numbers)
         status, starts = numbers[:, :2].astype(np.int64).T
         found = assemble(self.chain, goals, self._layout.spread(values), status, starts, ())
         jumped = (starts > 0) & (status == Status.REACHED) & follow
