@@ -33,8 +33,10 @@ def solver_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
 
 
 def turn_faults(model: SceneModel, turns_end: bool, document: Document) -> Iterator[Fault]:
-    """Check that what solves goals with an orientation turns the end."""
-    if turns_end or model.solver == "2d" or isinstance(model.goals, CsvModel):
+    """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
+    if turns_end or model.solver == "2d" or model.trajectory is not None:
+        return
+    if isinstance(model.goals, CsvModel):
         return
     for number, goal in enumerate(model.goals):
         if goal.turn is not None:

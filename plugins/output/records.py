@@ -18,6 +18,7 @@ from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
 from limbik.core.solving import are_met
+from limbik.core.whole import PoseSolution
 from limbik.plugins.output.servo import ServoPose
 
 SCHEMA = 1
@@ -70,6 +71,10 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "bend_vector": solution.bend_vector.tolist(),
         "at_limits": list(solution.limits_touched()),
     }
+    if isinstance(solution, PoseSolution):
+        record["goal_rotation"] = solution.goal_rotation.tolist()
+        record["rotation_error"] = float(np.degrees(solution.rotation_error))
+        record["jumped"] = bool(solution.jumped)
     if isinstance(solution, PlanarSolution):
         record["planar"] = {
             "angles": np.degrees(solution.planar_angles).tolist(),

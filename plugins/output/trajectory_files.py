@@ -71,7 +71,9 @@ def _table(motion: JointMotion, samples: Samples) -> Array:
 def motion_arrays(motion: JointMotion, servos: ServoMotion | None = None) -> bytes:
     """Write a compressed NPZ file; angles in radians like all arrays of limbik."""
     samples, solution = motion.samples, motion.solution
-    told = {} if servos is None else {"servo_ids": servos.ids, "servo_ticks": servos.ticks}
+    told: dict[str, Any] = (
+        {} if servos is None else {"servo_ids": servos.ids, "servo_ticks": servos.ticks}
+    )
     content = io.BytesIO()
     np.savez_compressed(
         content,

@@ -186,8 +186,9 @@ def _unwound(chain: Chain, angles: Array) -> Array:
 
 def _unreached(samples: Samples, solution: Solution, tolerance: float) -> list[Failure]:
     distance, status = np.asarray(solution.distance), np.asarray(solution.status)
-    posed = isinstance(solution, PoseSolution)
-    turned = np.asarray(solution.rotation_error) if posed else np.zeros(len(samples))
+    turned = np.zeros(len(samples))
+    if isinstance(solution, PoseSolution):
+        turned = np.asarray(solution.rotation_error)
     found: list[Failure] = []
     for number, kind in _KINDS.items():
         for run in _runs(kind, status == number, distance, tolerance, "", samples):

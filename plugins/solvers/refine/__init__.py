@@ -1,1 +1,1 @@
-"""Pose goals: position and orientation of the end, by damped Newton steps within the limits (M-13)."""
+"""Pose goals: position and orientation of the end, within the limits (M-13)."""

@@ -1,4 +1,4 @@
-"""Where the hinges' angles put the end, how far that is from a goal, and how each hinge moves it."""
+"""Where the hinges' angles put the end, how far off that is, and how each hinge moves it."""
 
 from math import atan2, cos, pi, sin
 

@@ -104,7 +104,7 @@ def _search(
                 _copy(ANGLE, BEST, rows)
             if found >= compared:
                 return best, attempt + 1
-        # Where no start reaches it, an earlier one stays the answer until a later is clearly nearer.
+        # Where none reaches it, an early one stays the answer until a later is clearly nearer.
         elif found == 0 and left.square < best.square * (1.0 - STEADINESS):
             best = left
             _copy(ANGLE, BEST, rows)
@@ -127,7 +127,7 @@ def _spans(goal: Goal, effort: Effort, span: Span) -> bool:
         total += norm(hand)
         longest = max(longest, norm(hand))
     distance = norm(subtract(target, vector(span.start, 0)))
-    return 2.0 * longest - total - slack <= distance <= total + slack
+    return bool(2.0 * longest - total - slack <= distance <= total + slack)
 
 
 @kernel
@@ -179,9 +179,9 @@ def solve_goals(
         left, used = _search(goal, tried, hinges, spacing, compared, rows, system)
         for k in range(count):
             angle = rows[k, BEST]
-            angles[row, k] = (
-                angle if hinges.high[k] < inf else near[k] + wrap_angle(angle - near[k])
-            )
+            if hinges.high[k] == inf:
+                angle = near[k] + wrap_angle(angle - near[k])
+            angles[row, k] = angle
             if chained:
                 near[k] = angles[row, k]
         status = REACHED if _is_met(left, effort) else OUT_OF_REACH
