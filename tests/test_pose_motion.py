@@ -1,4 +1,4 @@
-"""Joint motion with pose goals: the orientation is solved too, and what fails has time and place."""
+"""Joint motion with pose goals: the orientation is solved too, failures have time and place."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -62,7 +62,7 @@ def test_the_shipped_weld_follows_position_and_orientation() -> None:
 def test_a_pose_out_of_reach_is_listed_with_time_place_and_angle() -> None:
     chain = weld().chain
     start = bent(chain)
-    far = KeyPoint(start.position + (0.0, 0.0, 60.0), start.quaternion)
+    far = KeyPoint(start.position + np.array([0.0, 0.0, 60.0]), start.quaternion)
     motion = joint_motion(straight(start, far), PoseSolver(chain))
     kinds = [failure.kind for failure in motion.failures]
 
@@ -154,7 +154,7 @@ def test_servos_get_the_ticks_of_every_sample() -> None:
 
     assert servos.titles == ["servo 4 shoulder pitch", "servo 7 elbow pitch"]
     degrees = np.degrees(motion.angles[:, [1, 2], 1])
-    exact = 512.0 + np.array([1.0, -1.0]) * (degrees + (0.0, 90.0)) * 1023 / 300
+    exact = 512.0 + np.array([1.0, -1.0]) * (degrees + np.array([0.0, 90.0])) * 1023 / 300
     assert np.abs(servos.ticks - exact).max() <= 0.5
     assert 0.0 < servos.distance.max() < 2.0 * 95.0 * np.radians(0.5 * 300 / 1023)
 
