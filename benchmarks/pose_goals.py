@@ -1,4 +1,4 @@
-"""Pose goals by `refine`: how many of 1,000 reachable poses are reached, and how fast.
+"""Pose goals by `refine`: how many reachable poses are reached, how fast, and how paths go.
 
 python benchmarks/pose_goals.py
 """
@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from limbik import PoseSolver
-from limbik.core.chain import Chain
+from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.scene import read_scene
@@ -21,6 +21,8 @@ GOALS = 1000
 ROUNDS = 5
 EXACT = 1e-6  # [m] and [rad]
 LEAST = 0.999
+WALKS, ARMS = 60, 30
+ZERO = (0.0, 0.0, 0.0)
 
 
 def reachable(chain: Chain, count: int, seed: int = 1) -> tuple[Array, Array]:
@@ -73,6 +75,57 @@ def measure(name: str, unit: float) -> bool:
     return share >= LEAST
 
 
+def follow(name: str) -> None:
+    """Print what becomes of walks through 98 % of every range, a small step a sample."""
+    chain = read_scene(CONFIGS / name).chain
+    solver = PoseSolver(chain, tolerance=EXACT * chain.length, angle=EXACT)
+    middle, half = (chain.high + chain.low) / 2.0, 0.98 * (chain.high - chain.low) / 2.0
+    time = np.arange(2000)[:, None, None] * 0.004
+    reached, jumps, seconds = 0, 0, 0.0
+    for seed in range(WALKS):
+        rng = np.random.default_rng(seed)
+        phase, rate = rng.uniform(0.0, 6.3, half.shape), rng.uniform(0.3, 1.0, half.shape)
+        way = middle + half * np.sin(phase + rate * time)
+        places, turns = (part[:, -1] for part in forward_kinematics(chain, way))
+        start = perf_counter()
+        found = solver.follow(places, turns, near=way[0])
+        seconds += perf_counter() - start
+        reached += int(np.sum(found.reached))
+        jumps += int(np.sum(found.jumped))
+    count = WALKS * len(time)
+    print(f"{name}, walks: {reached} of {count} samples reached, {jumps} jumps told, ", end="")
+    print(f"{seconds / count * 1e6:.1f} µs a sample")
+
+
+def any_arm(rng: np.random.Generator, hinges: int, width: float) -> Chain:
+    """Return an arm of hinges about any axes, with any offsets and ranges of a width [rad]."""
+    joints = []
+    for k in range(hinges):
+        low = rng.uniform(-np.pi, np.pi - width)
+        spans = [(0.0, 0.0)] * 3
+        spans[rng.integers(3)] = (low, low + width)
+        frozen = rng.choice([0.0, np.pi / 2, -np.pi / 2], 3)
+        joints.append(Joint(f"j{k}", tuple(rng.uniform(-0.5, 0.5, 3)), tuple(frozen), ZERO, *spans))
+    return Chain([*joints, Joint("end", (0.0, 0.0, 0.3), ZERO, ZERO, *[(0.0, 0.0)] * 3)])
+
+
+def measure_any() -> None:
+    """Print the share reached on arms made at random."""
+    rng = np.random.default_rng(1)
+    for hinges in (6, 7, 9):
+        for width in (1.0, 2.5, 5.5):
+            met = []
+            for _ in range(ARMS):
+                chain = any_arm(rng, hinges, width)
+                poses = reachable(chain, 100, int(rng.integers(1 << 30)))
+                met.append(np.mean(PoseSolver(chain, EXACT, EXACT).solve_many(*poses).reached))
+            ranges = f"ranges of {np.degrees(width):.0f}°"
+            print(f"{ARMS} arms of {hinges} hinges, {ranges}: {np.mean(met):.2%} reached")
+
+
 if __name__ == "__main__":
     good = [measure("arm7.yaml", 1.0), measure("weld.yaml", 0.01)]
+    follow("arm7.yaml")
+    follow("weld.yaml")
+    measure_any()
     raise SystemExit(not all(good))

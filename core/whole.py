@@ -54,8 +54,8 @@ class PoseSolution(WholeSolution):
     Attributes:
         goal_rotation: World rotations asked for, (3, 3) or (m, 3, 3); NaN where none was.
         rotation_error: Angle left to them [rad]; (m,) for many; 0 where none was asked for.
-        jumped: Whether no way led here from the pose before on a path, so that another fold of the
-            chain had to be taken; (m,) for many.
+        jumped: Whether the chain had to go over into another fold, or turn farther than the step of
+            the goal explains, on a path; (m,) for many.
     """
 
     goal_rotation: Array = field(default_factory=lambda: np.full((3, 3), np.nan))

@@ -1,10 +1,11 @@
 """A damped Newton descent of the end's pose to a goal, inside the limits.
 
 The step of smallest norm that removes the error to first order (Levenberg-Marquardt on the 6 x 6
-side of the problem); hinges at a limit are left out while the step would push them further.
+side of the problem); hinges at a limit are left out while the step would push them further. What an
+arm has to spare beyond six hinges draws it away from its limits.
 """
 
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 from limbik.core.jit import kernel
@@ -15,6 +16,7 @@ from limbik.plugins.solvers.refine.place import (
     ACTIVE,
     ANGLE,
     MOVES,
+    PULLED,
     STEP,
     TRIAL,
     place,
@@ -25,6 +27,7 @@ from limbik.plugins.solvers.refine.place import (
 LONGEST_STEP = 1.0  # [rad]; a longer step leaves the range where the first order says something
 SLOW = 0.95  # share of the squared error; a step that leaves more than this counts as slow
 PATIENCE = 6  # slow steps in a row that end a descent
+PULL = 1.0  # away from the limits, over the size of the error
 
 
 class Goal(NamedTuple):
@@ -77,7 +80,8 @@ def descend(
         steps: Most steps tried.
         hinges: The chain.
         rows: (k, WIDTH); its ANGLE is changed, inside the limits.
-        system: Room for the equations, (9, 6).
+        system: Room for the equations, (9, 6): six rows of the matrix, the error, that of a trial,
+            the right side.
 
     Returns:
         What is left; never more than before.
@@ -89,6 +93,7 @@ def descend(
     for _ in range(steps):
         if left.distance <= precision * goal.size and left.angle <= precision:
             break
+        _write_pull(PULL * sqrt(left.square), hinges, rows)
         _find_step(damping * min(left.square, 1.0) + 1e-12, hinges, rows, system)
         _try_step(hinges, rows)
         end, frame = place(TRIAL, hinges, rows)
@@ -112,7 +117,11 @@ def descend(
 
 @kernel
 def _find_step(damping: float, hinges: Hinges, rows: Array, system: Array) -> None:
-    """Write every hinge's step; blocked hinges get none, the others take over."""
+    """Write every hinge's step; blocked hinges get none, the others take over.
+
+    With a pull p it is p + Jᵀ (J Jᵀ + damping)⁻¹ (error - J p): the part of p that moves the end is
+    taken back.
+    """
     count = rows.shape[0]
     for k in range(count):
         rows[k, ACTIVE] = 1.0
@@ -124,7 +133,7 @@ def _find_step(damping: float, hinges: Hinges, rows: Array, system: Array) -> No
             rows[k, STEP] = 0.0
             if rows[k, ACTIVE] == 0.0:
                 continue
-            step = 0.0
+            step = rows[k, PULLED]
             for i in range(6):
                 step += rows[k, MOVES + i] * system[8, i]
             angle = rows[k, ANGLE]
@@ -138,22 +147,35 @@ def _find_step(damping: float, hinges: Hinges, rows: Array, system: Array) -> No
 
 
 @kernel
+def _write_pull(size: float, hinges: Hinges, rows: Array) -> None:
+    """Write which way each hinge would go to stand away from its limits [rad]."""
+    for k in range(rows.shape[0]):
+        low, high = hinges.low[k], hinges.high[k]
+        rows[k, PULLED] = 0.0
+        if high < inf:
+            off = (2.0 * rows[k, ANGLE] - low - high) / (high - low)
+            rows[k, PULLED] = -size * off * off * off
+
+
+@kernel
 def _set_up(damping: float, rows: Array, system: Array) -> None:
-    """Write J Jᵀ + damping over the active hinges, lower half."""
+    """Write J Jᵀ + damping, lower half, and error - J pull, over the active hinges."""
     for i in range(6):
         for j in range(i + 1):
             system[i, j] = 0.0
         system[i, i] = damping
+        system[8, i] = system[6, i]
     for k in range(rows.shape[0]):
         if rows[k, ACTIVE] != 0.0:
             for i in range(6):
+                system[8, i] -= rows[k, MOVES + i] * rows[k, PULLED]
                 for j in range(i + 1):
                     system[i, j] += rows[k, MOVES + i] * rows[k, MOVES + j]
 
 
 @kernel
 def _solve(system: Array) -> None:
-    """Solve the 6 x 6 equations by Cholesky's method: right side in row 6, answer in row 8."""
+    """Solve the 6 x 6 equations by Cholesky's method; row 8 holds the right side, then w."""
     for i in range(6):
         for j in range(i):
             total = system[i, j]
@@ -165,7 +187,7 @@ def _solve(system: Array) -> None:
             total -= system[i, k] * system[i, k]
         system[i, i] = sqrt(max(total, 1e-300))
     for i in range(6):
-        total = system[6, i]
+        total = system[8, i]
         for k in range(i):
             total -= system[i, k] * system[8, k]
         system[8, i] = total / system[i, i]

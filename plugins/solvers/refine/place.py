@@ -25,8 +25,8 @@ Pose = tuple[Vector, Matrix]
 
 # Columns of the working rows, one row a hinge.
 ANGLE, TRIAL, BEST, NEAR, ACTIVE, STEP = 0, 1, 2, 3, 4, 5
-ORIGIN, AXIS, MOVES = 6, 9, 12
-WIDTH = 18
+PULLED, ORIGIN, AXIS, MOVES = 6, 7, 10, 13
+WIDTH = 19
 
 
 @kernel

@@ -1,6 +1,6 @@
 """Solving pose goals: descents from the pose before, then from starts spread over the ranges."""
 
-from math import inf, isnan, pi
+from math import inf, isnan, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.rotation import (
     add,
+    clamp,
     matrix,
     norm,
     rotate,
@@ -16,13 +17,16 @@ from limbik.core.kernels.rotation import (
     wrap_angle,
 )
 from limbik.core.rotation import Array
-from limbik.plugins.solvers.refine.descent import Goal, Left, descend
+from limbik.plugins.solvers.refine.descent import Goal, Left, descend, measure
 from limbik.plugins.solvers.refine.hinges import Hinges, Span
-from limbik.plugins.solvers.refine.place import ANGLE, BEST, NEAR, WIDTH
+from limbik.plugins.solvers.refine.place import ANGLE, BEST, NEAR, WIDTH, place
 
 # Numbers of `limbik.core.solution.Status`.
 REACHED, STOPPED, OUT_OF_REACH, BLOCKED = 0, 1, 2, 3
 STEADINESS = 0.002  # share of the error by which a later start must be nearer
+BESIDE, BESIDE_STARTS = 0.4, 8  # how far [rad] and how many starts beside the pose before
+LEAP = 0.5  # [rad]; a pose this near to the one before is taken at once
+STEEP = 20.0  # turn over the step of the goal, with `Goal.size` as a radian, that is a jump
 COMPARED = 8  # folds found on a path before the nearest to the pose before is taken
 FEW_STARTS = 2  # toward a goal that the bones do not span
 UNLIMITED_STARTS = 24  # to find out whether limits are the reason
@@ -55,6 +59,16 @@ def _copy(source: int, out: int, rows: Array) -> None:
 
 
 @kernel
+def _beside(attempt: int, spacing: Array, hinges: Hinges, rows: Array) -> None:
+    """Write the angles of a start beside the pose before, a little farther each time."""
+    radius = BESIDE * (attempt + 1.0) / BESIDE_STARTS
+    for k in range(rows.shape[0]):
+        share = (0.5 + (attempt + 1) * spacing[k]) % 1.0
+        angle = rows[k, NEAR] + radius * (2.0 * share - 1.0)
+        rows[k, ANGLE] = clamp(angle, hinges.low[k], hinges.high[k])
+
+
+@kernel
 def _spread(attempt: int, spacing: Array, hinges: Hinges, rows: Array) -> None:
     """Write the angles of a start: evenly spread over the ranges, the middles first."""
     for k in range(rows.shape[0]):
@@ -78,11 +92,20 @@ def _search(
     effort: Effort,
     hinges: Hinges,
     spacing: Array,
-    compared: int,
+    chained: bool,
     rows: Array,
     system: Array,
 ) -> tuple[Left, int]:
     """Leave the best pose in BEST: the first that reaches the goal, or the nearest of several.
+
+    Args:
+        goal: The goal.
+        effort: How exactly and how long to search.
+        hinges: k hinges.
+        spacing: Steps of the spread starts, (k,).
+        chained: Whether the answer shall be near the pose in NEAR, from which the search begins.
+        rows: (k, WIDTH).
+        system: Room for the equations.
 
     Returns:
         What is left, and the number of starts used; 0 if the pose before led to the goal.
@@ -93,8 +116,12 @@ def _search(
     if _is_met(best, effort):
         return best, 0
     found, shortest = 0, inf
-    for attempt in range(effort.starts):
-        _spread(attempt, spacing, hinges, rows)
+    beside = min(effort.starts, BESIDE_STARTS) if chained else 0
+    for attempt in range(beside + effort.starts):
+        if attempt < beside:
+            _beside(attempt, spacing, hinges, rows)
+        else:
+            _spread(attempt - beside, spacing, hinges, rows)
         left = descend(goal, effort.precision, effort.steps, hinges, rows, system)
         if _is_met(left, effort):
             found += 1
@@ -102,13 +129,13 @@ def _search(
             if found == 1 or way < shortest:
                 best, shortest = left, way
                 _copy(ANGLE, BEST, rows)
-            if found >= compared:
+            if not chained or way < LEAP or found >= COMPARED:
                 return best, attempt + 1
         # Where none reaches it, an early one stays the answer until a later is clearly nearer.
         elif found == 0 and left.square < best.square * (1.0 - STEADINESS):
             best = left
             _copy(ANGLE, BEST, rows)
-    return best, effort.starts
+    return best, beside + effort.starts
 
 
 @kernel
@@ -162,7 +189,8 @@ def solve_goals(
         chained: Whether each goal is solved from the pose of the one before.
         near: The pose to start from, (k,) [rad]; with `chained` it becomes the last.
         angles: OUT: (m, k) [rad], within the limits.
-        numbers: OUT: status, starts used beside the pose before, distance, angle, (m, 4).
+        numbers: OUT: status, starts used beside the pose before, distance, angle, and whether the
+            pose jumped away from the one before, (m, 5).
     """
     count = near.shape[0]
     rows, system = np.zeros((count, WIDTH)), np.zeros((9, 6))
@@ -175,19 +203,25 @@ def solve_goals(
             rows[k, NEAR] = near[k]
         spanned = _spans(goal, effort, span)
         tried = effort if spanned else _with_starts(effort, min(effort.starts, FEW_STARTS))
-        compared = COMPARED if chained else 1
-        left, used = _search(goal, tried, hinges, spacing, compared, rows, system)
+        end, frame = place(NEAR, hinges, rows)
+        step = sqrt(measure(goal, end, frame, system[7]).square)
+        left, used = _search(goal, tried, hinges, spacing, chained, rows, system)
+        way = 0.0
         for k in range(count):
             angle = rows[k, BEST]
             if hinges.high[k] == inf:
                 angle = near[k] + wrap_angle(angle - near[k])
             angles[row, k] = angle
+            way = max(way, abs(angle - near[k]))
             if chained:
                 near[k] = angles[row, k]
         status = REACHED if _is_met(left, effort) else OUT_OF_REACH
         if status != REACHED and spanned:
             tried = _with_starts(effort, UNLIMITED_STARTS)
-            ideal, _ = _search(goal, tried, unlimited, spacing, 1, rows, system)
+            ideal, _ = _search(goal, tried, unlimited, spacing, False, rows, system)
             status = BLOCKED if _is_met(ideal, effort) else STOPPED
+        # Far, and not on the way from the pose before or farther than the goal's step explains.
+        jumped = way > LEAP and (used > BESIDE_STARTS or way > STEEP * step)
         numbers[row, 0], numbers[row, 1] = status, used
         numbers[row, 2], numbers[row, 3] = left.distance, left.angle
+        numbers[row, 4] = 1.0 if chained and row > 0 and status == REACHED and jumped else 0.0

@@ -160,13 +160,12 @@ class PoseSolver(PoseBatch):
         effort = Effort(
             float(self.tolerance), float(self.angle), PRECISION, length, self.steps, self.starts
         )
-        values, numbers = np.empty((len(goals), len(start))), np.empty((len(goals), 4))
+        values, numbers = np.empty((len(goals), len(start))), np.empty((len(goals), 5))
         fixed = self._layout.hinges, self._span, effort, self._spacing
         solve_goals(*fixed, goals, rotations, follow, start.copy(), values, numbers)
         status, starts = numbers[:, :2].astype(np.int64).T
         found = assemble(self.chain, goals, self._layout.spread(values), status, starts, ())
-        jumped = (starts > 0) & (status == Status.REACHED) & follow
-        jumped[:1] = False
+        jumped = numbers[:, 4] > 0.0
         notes = [
             _note(*row)
             for row in zip(status.tolist(), numbers[:, 3].tolist(), jumped.tolist(), strict=True)
