@@ -7,6 +7,7 @@ from limbik.core.errors import Fault, InputError
 TEMPLATES = (
     "arm",
     "arm7",
+    "arm7-pose",
     "cosine-arm",
     "finger",
     "humanoid",
@@ -17,7 +18,8 @@ TEMPLATES = (
     "spine",
     "weld",
 )
-_WITH_FILES = {"arm7": "arm7.urdf", "humanoid": "humanoid.urdf"}  # what a scene is read with
+# what a scene is read with
+_WITH_FILES = {"arm7": "arm7.urdf", "arm7-pose": "arm7.urdf", "humanoid": "humanoid.urdf"}
 SCHEMA_FILE = "limbik.schema.json"
 
 
