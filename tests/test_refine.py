@@ -301,6 +301,15 @@ def test_what_is_no_rotation_is_refused(rotation: Array, words: str) -> None:
         PoseSolver(arm()).solve([0.3, 0.3, 0.3], rotation)
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [{"tolerance": 0.0}, {"angle": np.nan}, {"weight": 1.5}, {"steps": 0}, {"starts": -1}],
+)
+def test_what_is_out_of_its_range_is_refused_by_name(wrong: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match=f"{next(iter(wrong))}: must be"):
+        PoseSolver(arm(), **wrong)
+
+
 @given(st.integers(0, 10_000), st.floats(0.0, np.pi))
 def test_the_rotation_vector_turns_one_rotation_into_the_other(seed: int, angle: float) -> None:
     rng = np.random.default_rng(seed)

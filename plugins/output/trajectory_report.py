@@ -10,6 +10,7 @@ from limbik.core.errors import SceneError
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
 from limbik.core.slots import SOLVER
+from limbik.core.solution import Continuity
 from limbik.core.solving import scene_solver
 from limbik.core.whole import PoseBatch, prepare
 from limbik.plugins.output.files import write_whole
@@ -70,7 +71,9 @@ def run_trajectory(
     samples = planned.sample(section.dt if dt is None else dt)
     before_solving()
     solver = posed or scene_solver(scene, registry)
-    motion = joint_motion(samples, solver, degrees_to_limits(section.joint_speeds))
+    pose = planned.key_points[0].angles
+    before = Continuity.from_pose(pose) if posed is not None and pose is not None else None
+    motion = joint_motion(samples, solver, degrees_to_limits(section.joint_speeds), before)
     servos = None if profile is None else servo_motion(profile, motion)
     _write(scene, planned, motion, servos, files)
     if as_json:

@@ -176,3 +176,18 @@ def test_a_solver_of_positions_alone_is_refused(run: Run, tmp_path: Path) -> Non
 
     assert status == 2
     assert "a trajectory needs 3d or a solver of pose goals, not 'fabrik'" in err
+
+
+@pytest.mark.parametrize("elbow", [40.0, -40.0])
+def test_the_joint_angles_of_the_start_choose_the_fold(
+    run: Run, tmp_path: Path, elbow: float
+) -> None:
+    text = POSES.replace("pitch: [0, 150]", "pitch: [-150, 150]")
+    joints = f"a: {{joints: {{shoulder: [0, {-elbow}, 0], elbow: [0, {elbow}, 0]}}}}"
+    text = text.replace("a: {position: [0, 3, 4], euler: [0, 20, 0], convention: hpb}", joints)
+    (tmp_path / "fold.yaml").write_text(text.replace("[1, 3, 4]", "[0.3, 0, 6]"), encoding="utf-8")
+    run("trajectory", "fold.yaml", "--npz=f.npz")
+    angles = np.load(tmp_path / "f.npz")["angles"]
+
+    assert np.degrees(angles[0, 1, 1]) == pytest.approx(elbow, abs=1e-4)
+    assert (np.sign(angles[:, 1, 1]) == np.sign(elbow)).all()

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 from limbik.core.chain import Chain
-from limbik.core.errors import ChainError, InputError
+from limbik.core.errors import ChainError, Fault, InputError
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
@@ -68,6 +68,7 @@ class PoseSolver(PoseBatch):
 
     Raises:
         ChainError: The chain has fewer turning axes.
+        InputError: An argument is out of its range.
     """
 
     def __init__(
@@ -81,6 +82,7 @@ class PoseSolver(PoseBatch):
     ) -> None:
         self.chain, self.tolerance, self.angle = chain, tolerance, angle
         self.weight, self.steps, self.starts = weight, steps, starts
+        _check(self)
         self._layout = read_hinges(chain)
         count = len(self._layout.joints)
         if count < LEAST_HINGES:
@@ -198,6 +200,20 @@ def _note(status: int, error: float, jumped: bool) -> str:
     if jumped:
         return "another fold than before"
     return f"turned off by {np.degrees(error):.3g}°" if status != Status.REACHED and error else ""
+
+
+def _check(solver: PoseSolver) -> None:
+    """Refuse what cannot be solved with; scenes are checked before."""
+    for name, fits, right in (
+        ("tolerance", 0.0 < solver.tolerance < np.inf, "above 0"),
+        ("angle", 0.0 < solver.angle <= np.pi, "above 0, at most π"),
+        ("weight", 0.0 <= solver.weight <= 1.0, "0 to 1"),
+        ("steps", solver.steps >= 1, "1 or more"),
+        ("starts", solver.starts >= 0, "0 or more"),
+    ):
+        if not fits:
+            message = f"must be {right}, not {getattr(solver, name)}"
+            raise InputError(Fault("range", message, name))
 
 
 def _spacing(count: int) -> Array:
