@@ -9,11 +9,13 @@ import numpy as np
 from limbik.core.formats import Bake
 from limbik.core.mirror import mirrored_solution
 from limbik.core.motion import motion_metrics
+from limbik.core.posegoals import solve_turned
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
-from limbik.core.solving import scene_solver, solve_part, solve_whole
+from limbik.core.solving import scene_solver, solve_part
+from limbik.core.whole import prepare
 
 BLOCK: Final = 500  # goals solved between two reports of progress
 FRAME_TIME: Final = 1.0 / 30.0
@@ -53,7 +55,8 @@ def bake_scene(
     """
     require_goals(scene)
     if scene.solver is not None:
-        parts = [solve_whole(scene, scene.solver)]
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        parts = [solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)]
     else:
         parts = _blocks(scene, registry, progress)
     solution = _joined(parts)

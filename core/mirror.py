@@ -14,9 +14,9 @@ import numpy as np
 
 from limbik.core.chain import Chain
 from limbik.core.frames import Y_UP, mirror_hpb
+from limbik.core.posegoals import PoseSolution
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
-from limbik.core.whole import PoseSolution
 
 _WORDS: Final = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 _LETTERS: Final = (("L", "R"), ("l", "r"))

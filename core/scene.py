@@ -42,15 +42,16 @@ from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortl
 from limbik.core.formats import Body
 from limbik.core.goals import read_goals
 from limbik.core.pole import Pole
+from limbik.core.posegoals import PoseBatch, turn_faults
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
-from limbik.core.sceneplane import solver_faults, turn_faults
+from limbik.core.sceneplane import solver_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
-from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, PoseBatch, prepare
+from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES

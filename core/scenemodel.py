@@ -149,6 +149,12 @@ class GoalModel(Model):
         return self.matrix[0][3], self.matrix[1][3], self.matrix[2][3]
 
     @property
+    def turn_key(self) -> str:
+        """The key that gives the orientation; empty without one."""
+        keys = ("rotation", "quaternion", "matrix")
+        return next((key for key in keys if getattr(self, key) is not None), "")
+
+    @property
     def turn(self) -> Array | None:
         """Orientation in the world, HPB [rad]; None without one."""
         if self.matrix is not None:

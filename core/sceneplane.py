@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from limbik.core.errors import Fault
-from limbik.core.scenemodel import CsvModel, GoalModel, SceneModel
+from limbik.core.scenemodel import CsvModel, SceneModel
 from limbik.core.settings import misfits_in_2d
 from limbik.core.yamlfile import Document, KeyPath
 
@@ -29,23 +29,4 @@ def solver_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
         if goal.turn is not None and model.pole is not None:
             message = "nothing turns with this goal; it moves a pole rotor"
             hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
-            yield document.fault("solver", message, ("goals", number, _turn_key(goal)), hint=hint)
-
-
-def turn_faults(model: SceneModel, turns_end: bool, document: Document) -> Iterator[Fault]:
-    """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
-    if turns_end or model.solver == "2d" or model.trajectory is not None:
-        return
-    if isinstance(model.goals, CsvModel):
-        return
-    for number, goal in enumerate(model.goals):
-        if goal.turn is not None:
-            message = "its orientation has no effect: the scene's solver turns the end to no goal"
-            hint = "choose a solver of pose goals, see 'limbik plugins'"
-            yield document.fault("solver", message, ("goals", number, _turn_key(goal)), hint=hint)
-
-
-def _turn_key(goal: GoalModel) -> str:
-    """Return the key that gives a goal's orientation."""
-    keys = ("rotation", "quaternion", "matrix")
-    return next(key for key in keys if getattr(goal, key) is not None)
+            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)

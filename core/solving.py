@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from typing import Any
 
-from limbik.core.binding import Bound
+from limbik.core.posegoals import solve_turned
 from limbik.core.registry import Registry
-from limbik.core.rotation import hpb_to_matrix
 from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import PoseBatch, prepare
+from limbik.core.whole import prepare
 
 
 def solve_scene(
@@ -32,7 +31,8 @@ def solve_scene(
     """
     require_goals(scene)
     if scene.solver is not None:
-        found = solve_whole(scene, scene.solver)
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        found = solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)
         return [found.single(row) for row in range(len(scene.goals))]
     solver = scene_solver(scene, registry)
     if not trace:
@@ -46,19 +46,6 @@ def solve_scene(
             asked["goal_turn"] = scene.goal_turns[row]
         solutions.append(solver.solve(goal, trace=True, **asked))
     return solutions
-
-
-def solve_whole(scene: Scene, solver: Bound) -> Solution:
-    """Solve all goals of a scene with a whole solver of a plug-in, as a path if the scene says so.
-
-    Args:
-        scene: The scene.
-        solver: The solver; one that does not turn the end leaves the goals' orientations aside.
-    """
-    batch = prepare(solver, scene.chain, scene.settings)
-    if isinstance(batch, PoseBatch) and scene.goal_turns is not None:
-        return batch.solve_poses(scene.goals, hpb_to_matrix(scene.goal_turns), scene.follow)
-    return batch(scene.goals, scene.follow)
 
 
 def solve_part(

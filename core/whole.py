@@ -2,14 +2,13 @@
 
 Such a strategy's `kernel` is no compiled step but a Python function `(chain, settings, params)`,
 params in radians. It looks at the chain, raises `ChainError` if it cannot solve this kind, and
-returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis, or a `PoseBatch`
-if it turns the end to an orientation too. It must be quick and load no compiler: `limbik check`
-calls it.
+returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis, or a
+`limbik.core.posegoals.PoseBatch` if it turns the end to an orientation too. It must be quick and
+load no compiler: `limbik check` calls it.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,53 +44,6 @@ class WholeSolution(Solution):
     def remark(self) -> str:
         """What a reader should know beside the status, such as a singular pose."""
         return self.notes if isinstance(self.notes, str) else ""
-
-
-@dataclass(frozen=True, slots=True)
-class PoseSolution(WholeSolution):
-    """A solution of goals with an orientation (M-13).
-
-    Attributes:
-        goal_rotation: World rotations asked for, (3, 3) or (m, 3, 3); NaN where none was.
-        rotation_error: Angle left to them [rad]; (m,) for many; 0 where none was asked for.
-        jumped: Whether the chain had to go over into another fold, or turn farther than the step of
-            the goal explains, on a path; (m,) for many.
-    """
-
-    goal_rotation: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
-    rotation_error: float | Array = 0.0
-    jumped: bool | NDArray[np.bool_] = False
-
-
-class PoseBatch(ABC):
-    """A whole solver, ready for a chain, whose goals may have an orientation.
-
-    Attributes:
-        chain: The chain.
-        tolerance: Distance that counts as reached [length].
-        angle: Angle that counts as reached [rad].
-    """
-
-    chain: Chain
-    tolerance: float
-    angle: float
-
-    def __call__(self, goals: Array, follow: bool) -> Solution:
-        """Solve goals without an orientation, (m, 3) [length]."""
-        return self.solve_poses(goals, None, follow)
-
-    @abstractmethod
-    def solve_poses(
-        self, goals: Array, rotations: Array | None, follow: bool, near: Array | None = None
-    ) -> PoseSolution:
-        """Solve poses, as a path or each on its own.
-
-        Args:
-            goals: World positions, (m, 3) [length].
-            rotations: World rotations, (m, 3, 3); NaN, or None, where the orientation is free.
-            follow: Whether each is solved from the pose of the one before.
-            near: Pose to start from, HPB, (n, 3) [rad]; the rest pose if absent.
-        """
 
 
 def prepare(bound: Bound, chain: Chain, settings: Settings) -> Batch:

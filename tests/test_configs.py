@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from limbik.core.pose import forward_kinematics
+from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.core.solving import solve_scene
-from limbik.core.whole import PoseSolution
 from limbik.plugins.output.templates import TEMPLATES
 
 CONFIGS = sorted((Path(__file__).parents[1] / "configs").glob("*.yaml"))

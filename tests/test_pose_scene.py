@@ -7,11 +7,11 @@ import pytest
 
 from limbik.core.baking import bake_scene
 from limbik.core.errors import SceneError
+from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
 from limbik.core.rotation import hpb_to_matrix
 from limbik.core.scene import Scene, read_scene, scene_from
 from limbik.core.solving import solve_scene
-from limbik.core.whole import PoseSolution
 from limbik.core.yamlfile import read_yaml
 
 CONFIGS = Path(__file__).parents[1] / "configs"

@@ -14,11 +14,11 @@ import numpy as np
 
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
+from limbik.core.posegoals import PoseSolution
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
 from limbik.core.solving import are_met
-from limbik.core.whole import PoseSolution
 from limbik.plugins.output.servo import ServoPose
 
 SCHEMA = 1

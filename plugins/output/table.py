@@ -10,10 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from limbik.core.formats import Inspection
+from limbik.core.posegoals import PoseSolution
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
-from limbik.core.whole import PoseSolution
 from limbik.plugins.output.listing import range_text
 from limbik.plugins.output.records import outcome
 from limbik.plugins.output.servo import ServoPose

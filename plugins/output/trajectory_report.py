@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from limbik.core.errors import SceneError
+from limbik.core.posegoals import PoseBatch
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
 from limbik.core.slots import SOLVER
 from limbik.core.solution import Continuity
 from limbik.core.solving import scene_solver
-from limbik.core.whole import PoseBatch, prepare
+from limbik.core.whole import prepare
 from limbik.plugins.output.files import write_whole
 from limbik.plugins.output.servo import read_profile
 from limbik.plugins.output.servo_motion import ServoMotion, servo_motion

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from limbik.core.chain import AXES, Chain
 from limbik.core.errors import Fault, InputError
+from limbik.core.posegoals import PoseBatch, PoseSolution
 from limbik.core.rotation import Array
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import PoseBatch, PoseSolution
 from limbik.plugins.paths.quaternions import from_matrix, half_angle, short_way
 from limbik.plugins.paths.samples import Samples
 

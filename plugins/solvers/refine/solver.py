@@ -24,12 +24,13 @@ from pydantic import Field
 from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, Fault, InputError
 from limbik.core.hooks import hookimpl
+from limbik.core.posegoals import PoseBatch, PoseSolution
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 from limbik.core.solution import Status
 from limbik.core.solveinput import checked
 from limbik.core.strategy import Degrees, Strategy
-from limbik.core.whole import PoseBatch, PoseSolution, assemble
+from limbik.core.whole import assemble
 from limbik.plugins.solvers.refine.hinges import read_hinges, read_span
 
 NAME = "refine"
@@ -137,7 +138,7 @@ class PoseSolver(PoseBatch):
     def solve_poses(
         self, goals: Array, rotations: Array | None, follow: bool, near: Array | None = None
     ) -> PoseSolution:
-        """Solve poses of which some may have no orientation, see `limbik.core.whole.PoseBatch`."""
+        """Solve poses, some without an orientation, see `limbik.core.posegoals.PoseBatch`."""
         return self._run(np.ascontiguousarray(goals, np.float64), rotations, follow, near)
 
     def _run(
