@@ -47,32 +47,36 @@ class Span(NamedTuple):
     """Sum and longest of the bones between the two, (2,) [length]."""
 
 
-class Layout(NamedTuple):
-    """Where the hinges are in the chain.
+class Joints(NamedTuple):
+    """The chain of n joints that the hinges are part of."""
 
-    Attributes:
-        hinges: The hinges.
-        joints, axes: Joint and axis of each, (k,).
-        resting: Angles of the whole chain, fixed axes in their range, HPB, (n, 3) [rad].
-    """
-
-    hinges: Hinges
-    joints: NDArray[np.int64]
-    axes: NDArray[np.int64]
+    joint: NDArray[np.int64]
+    """Which joint each hinge is an axis of, (k,)."""
     resting: Array
+    """Angles with the fixed axes in their ranges, HPB, (n, 3) [rad]."""
+    offsets: Array
+    """(n, 3) [length]."""
+    frozen: Array
+    """(n, 3, 3)."""
+    base_position: Array
+    """(1, 3) [length]."""
+    base_rotation: Array
+    """(1, 3, 3)."""
 
-    def pick(self, angles: Array) -> Array:
-        """Return the hinges' angles out of poses, (..., n, 3) to (..., k) [rad]."""
-        return np.ascontiguousarray(angles[..., self.joints, self.axes])
 
-    def spread(self, values: Array) -> Array:
-        """Return poses with the hinges at given angles, (m, k) to (m, n, 3) [rad]."""
-        angles = np.repeat(self.resting[None], len(values), axis=0)
-        angles[:, self.joints, self.axes] = values
-        return angles
+def read_joints(chain: Chain) -> Joints:
+    """Lay a chain out for the kernels."""
+    return Joints(
+        np.nonzero(chain.high - chain.low > FIXED)[0],
+        np.clip(chain.rest, chain.low, chain.high),
+        chain.offsets.copy(),
+        chain.frozen.copy(),
+        np.array([chain.base_position], np.float64),
+        chain.base_rotation[None].copy(),
+    )
 
 
-def read_hinges(chain: Chain) -> Layout:
+def read_hinges(chain: Chain) -> Hinges:
     """Take a chain apart into its hinges; a joint that turns about three axes gives three."""
     resting = np.clip(chain.rest, chain.low, chain.high)
     turns = chain.high - chain.low > FIXED
@@ -88,15 +92,13 @@ def read_hinges(chain: Chain) -> Layout:
                 shift, before = np.zeros(3), np.eye(3)
             else:
                 before = before @ hpb_to_matrix(resting[joint, axis] * np.eye(3)[axis])
-    joints, axes = np.nonzero(turns)
-    hinges = Hinges(
-        axes.copy(),
+    return Hinges(
+        np.nonzero(turns)[1],
         np.array([*shifts, shift]),
         np.array([*befores, before]),
         chain.low[turns],
         chain.high[turns],
     )
-    return Layout(hinges, joints, axes, resting)
 
 
 def read_span(hinges: Hinges) -> Span:

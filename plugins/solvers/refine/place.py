@@ -1,6 +1,7 @@
 """Where the hinges' angles put the end, how far off that is, and how each hinge moves it."""
 
 from math import atan2, cos, pi, sin
+from typing import NamedTuple
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.rotation import (
@@ -10,18 +11,33 @@ from limbik.core.kernels.rotation import (
     column,
     cross,
     dot,
+    hpb_to_matrix,
     matrix,
     multiply,
     norm,
     rotate,
     scale,
+    store_matrix,
+    store_vector,
     subtract,
     vector,
 )
 from limbik.core.rotation import Array
-from limbik.plugins.solvers.refine.hinges import Hinges
+from limbik.plugins.solvers.refine.hinges import Hinges, Joints
 
 Pose = tuple[Vector, Matrix]
+
+
+class Poses(NamedTuple):
+    """m poses of n joints, to write into."""
+
+    angles: Array
+    """HPB, (m, n, 3) [rad]."""
+    positions: Array
+    """World, (m, n, 3) [length]."""
+    rotations: Array
+    """World, (m, n, 3, 3)."""
+
 
 # Columns of the working rows, one row a hinge.
 ANGLE, TRIAL, BEST, NEAR, ACTIVE, STEP = 0, 1, 2, 3, 4, 5
@@ -64,6 +80,22 @@ def place(angles: int, hinges: Hinges, rows: Array) -> Pose:
     last = rows.shape[0]
     origin = add(origin, rotate(frame, vector(hinges.shift, last)))
     return origin, multiply(frame, matrix(hinges.before, last))
+
+
+@kernel
+def place_joints(row: int, joints: Joints, pose: Poses) -> None:
+    """Write positions and rotations of all joints at a row's angles.
+
+    This goes joint by joint, not by the hinges, and so checks what these have found.
+    """
+    origin = vector(joints.base_position, 0)
+    frame = matrix(joints.base_rotation, 0)
+    for joint in range(joints.offsets.shape[0]):
+        origin = add(origin, rotate(frame, vector(joints.offsets, joint)))
+        turn = hpb_to_matrix(vector(pose.angles[row], joint))
+        frame = multiply(multiply(frame, matrix(joints.frozen, joint)), turn)
+        store_vector(origin, pose.positions[row], joint)
+        store_matrix(frame, pose.rotations[row], joint)
 
 
 @kernel

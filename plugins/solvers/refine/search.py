@@ -12,14 +12,23 @@ from limbik.core.kernels.rotation import (
     matrix,
     norm,
     rotate,
+    store_vector,
     subtract,
     vector,
     wrap_angle,
 )
 from limbik.core.rotation import Array
 from limbik.plugins.solvers.refine.descent import Goal, Left, descend, measure
-from limbik.plugins.solvers.refine.hinges import Hinges, Span
-from limbik.plugins.solvers.refine.place import ANGLE, BEST, NEAR, WIDTH, place
+from limbik.plugins.solvers.refine.hinges import Hinges, Joints, Span
+from limbik.plugins.solvers.refine.place import (
+    ANGLE,
+    BEST,
+    NEAR,
+    WIDTH,
+    Poses,
+    place,
+    place_joints,
+)
 
 # Numbers of `limbik.core.solution.Status`.
 REACHED, STOPPED, OUT_OF_REACH, BLOCKED = 0, 1, 2, 3
@@ -167,6 +176,7 @@ def _with_starts(effort: Effort, starts: int) -> Effort:
 @entry
 def solve_goals(
     hinges: Hinges,
+    joints: Joints,
     span: Span,
     effort: Effort,
     spacing: Array,
@@ -174,13 +184,14 @@ def solve_goals(
     rotations: Array,
     chained: bool,
     near: Array,
-    angles: Array,
+    poses: Poses,
     numbers: Array,
 ) -> None:
     """Solve many goals.
 
     Args:
         hinges: k hinges.
+        joints: The chain they are part of.
         span: What their bones can span.
         effort: How exactly and how long to search.
         spacing: Steps of the spread starts, (k,), shares of the ranges.
@@ -188,7 +199,7 @@ def solve_goals(
         rotations: World rotations, (m, 3, 3); NaN where the orientation does not count.
         chained: Whether each goal is solved from the pose of the one before.
         near: The pose to start from, (k,) [rad]; with `chained` it becomes the last.
-        angles: OUT: (m, k) [rad], within the limits.
+        poses: OUT: m poses, within the limits.
         numbers: OUT: status, starts used beside the pose before, distance, angle, and whether the
             pose jumped away from the one before, (m, 5).
     """
@@ -207,14 +218,20 @@ def solve_goals(
         step = sqrt(measure(goal, end, frame, system[7]).square)
         left, used = _search(goal, tried, hinges, spacing, chained, rows, system)
         way = 0.0
+        for joint in range(joints.resting.shape[0]):
+            store_vector(vector(joints.resting, joint), poses.angles[row], joint)
         for k in range(count):
             angle = rows[k, BEST]
             if hinges.high[k] == inf:
                 angle = near[k] + wrap_angle(angle - near[k])
-            angles[row, k] = angle
+            poses.angles[row, joints.joint[k], hinges.axis[k]] = angle
             way = max(way, abs(angle - near[k]))
             if chained:
-                near[k] = angles[row, k]
+                near[k] = angle
+        place_joints(row, joints, poses)
+        last = joints.resting.shape[0] - 1
+        end, frame = vector(poses.positions[row], last), matrix(poses.rotations[row], last)
+        left = measure(goal, end, frame, system[7])
         status = REACHED if _is_met(left, effort) else OUT_OF_REACH
         if status != REACHED and spanned:
             tried = _with_starts(effort, UNLIMITED_STARTS)

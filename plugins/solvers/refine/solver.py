@@ -30,8 +30,7 @@ from limbik.core.settings import Settings
 from limbik.core.solution import Status
 from limbik.core.solveinput import checked
 from limbik.core.strategy import Degrees, Strategy
-from limbik.core.whole import assemble
-from limbik.plugins.solvers.refine.hinges import read_hinges, read_span
+from limbik.plugins.solvers.refine.hinges import read_hinges, read_joints, read_span
 
 NAME = "refine"
 LEAST_HINGES = 6
@@ -84,12 +83,12 @@ class PoseSolver(PoseBatch):
         self.chain, self.tolerance, self.angle = chain, tolerance, angle
         self.weight, self.steps, self.starts = weight, steps, starts
         _check(self)
-        self._layout = read_hinges(chain)
-        count = len(self._layout.joints)
+        self._hinges, self._joints = read_hinges(chain), read_joints(chain)
+        count = len(self._joints.joint)
         if count < LEAST_HINGES:
             message = f"needs {LEAST_HINGES} axes that turn, or more; this chain has {count}"
             raise ChainError(f"{NAME} {message}")
-        self._span = read_span(self._layout.hinges)
+        self._span = read_span(self._hinges)
         self._spacing = _spacing(count)
 
     def solve(
@@ -147,7 +146,8 @@ class PoseSolver(PoseBatch):
         pose = self.chain.rest
         if near is not None:
             pose = checked(near, (len(self.chain), 3), "near")
-        start = self._layout.pick(np.clip(pose, self.chain.low, self.chain.high))
+        pose = np.clip(pose, self.chain.low, self.chain.high)
+        start = pose[self._joints.joint, self._hinges.axis]
         asked = np.full((len(goals), 3, 3), np.nan)
         if rotations is not None and self.weight > 0.0:
             asked[:] = rotations
@@ -157,50 +157,46 @@ class PoseSolver(PoseBatch):
         return self._solved(goals, asked, follow, start)
 
     def _solved(self, goals: Array, rotations: Array, follow: bool, start: Array) -> PoseSolution:
+        from limbik.plugins.solvers.refine.place import Poses
         from limbik.plugins.solvers.refine.search import Effort, solve_goals
 
         length = SIZE * self.chain.length
         effort = Effort(
             float(self.tolerance), float(self.angle), PRECISION, length, self.steps, self.starts
         )
-        values, numbers = np.empty((len(goals), len(start))), np.empty((len(goals), 5))
-        fixed = self._layout.hinges, self._span, effort, self._spacing
-        solve_goals(*fixed, goals, rotations, follow, start.copy(), values, numbers)
+        count, joints = len(goals), len(self.chain)
+        poses = Poses(
+            np.empty((count, joints, 3)),
+            np.empty((count, joints, 3)),
+            np.empty((count, joints, 3, 3)),
+        )
+        numbers = np.empty((count, 5))
+        fixed = self._hinges, self._joints, self._span, effort, self._spacing
+        solve_goals(*fixed, goals, rotations, follow, start.copy(), poses, numbers)
         status, starts = numbers[:, :2].astype(np.int64).T
-        found = assemble(self.chain, goals, self._layout.spread(values), status, starts, ())
-        jumped = numbers[:, 4] > 0.0
-        notes = [
-            _note(*row)
-            for row in zip(status.tolist(), numbers[:, 3].tolist(), jumped.tolist(), strict=True)
-        ]
+        errors, jumped = numbers[:, 3].copy(), numbers[:, 4] > 0.0
+        rows = zip(status.tolist(), errors.tolist(), jumped.tolist(), strict=True)
         return PoseSolution(
-            **{name: getattr(found, name) for name in _SHARED},
-            notes=tuple(notes),
+            self.chain,
+            goals,
+            *poses,
+            starts,
+            numbers[:, 2].copy(),
+            status,
+            np.zeros((count, 3)),
+            np.zeros(count),
+            notes=tuple(self._note(*row) for row in rows),
             goal_rotation=rotations,
-            rotation_error=numbers[:, 3].copy(),
+            rotation_error=errors,
             jumped=jumped,
         )
 
-
-_SHARED = (
-    "chain",
-    "goal",
-    "angles",
-    "positions",
-    "rotations",
-    "iterations",
-    "distance",
-    "status",
-    "bend_vector",
-    "bend_angle",
-)
-
-
-def _note(status: int, error: float, jumped: bool) -> str:
-    """Write what a reader should know beside the status."""
-    if jumped:
-        return "another fold than before"
-    return f"turned off by {np.degrees(error):.3g}°" if status != Status.REACHED and error else ""
+    def _note(self, status: int, error: float, jumped: bool) -> str:
+        """Write what a reader should know beside the status."""
+        if jumped:
+            return "another fold than before"
+        off = status != Status.REACHED and error > self.angle
+        return f"turned off by {np.degrees(error):.3g}°" if off else ""
 
 
 def _check(solver: PoseSolver) -> None:
