@@ -280,6 +280,14 @@ def test_the_weight_turns_the_end_a_share_of_the_way() -> None:
         np.testing.assert_allclose(left[weight][both], expected, atol=1e-3)
 
 
+def test_a_tolerance_finer_than_the_usual_precision_is_met_without_more_starts() -> None:
+    goals = poses(arm(), 100)
+    usual, fine = (PoseSolver(arm(), t, t).solve_many(*goals) for t in (1e-6, 1e-12))
+
+    assert np.asarray(fine.reached).all()
+    np.testing.assert_array_equal(fine.iterations, usual.iterations)
+
+
 def test_an_arm_of_five_hinges_is_refused() -> None:
     joints = list(arm("weld.yaml").joints)
     joints[5] = replace(joints[5], bank=(0.0, 0.0))

@@ -161,9 +161,9 @@ class PoseSolver(PoseBatch):
         from limbik.plugins.solvers.refine.search import Effort, solve_goals
 
         length = SIZE * self.chain.length
-        effort = Effort(
-            float(self.tolerance), float(self.angle), PRECISION, length, self.steps, self.starts
-        )
+        tolerance, angle = float(self.tolerance), float(self.angle)
+        aimed = min(PRECISION, 0.5 * tolerance / length, 0.5 * angle)
+        effort = Effort(tolerance, angle, aimed, length, self.steps, self.starts)
         count, joints = len(goals), len(self.chain)
         poses = Poses(
             np.empty((count, joints, 3)),
