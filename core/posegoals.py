@@ -2,17 +2,19 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import Fault
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scenemodel import CsvModel, SceneModel
-from limbik.core.solution import Solution
-from limbik.core.whole import Batch, WholeSolution
+from limbik.core.scenemodel import SceneModel, SolveModel
+from limbik.core.settings import Settings
+from limbik.core.solution import Continuity, Solution
+from limbik.core.whole import Batch, WholeSolution, prepare
 from limbik.core.yamlfile import Document
 
 
@@ -77,11 +79,55 @@ def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) 
     return batch.solve_poses(goals, hpb_to_matrix(turns), follow)
 
 
-def turn_faults(model: SceneModel, turns_end: bool, document: Document) -> Iterator[Fault]:
+class WholeSolver:
+    """A solver of a plug-in for one chain, called as `limbik.core.solver.Solver` is.
+
+    Args:
+        bound: The solver.
+        chain: What to pose.
+        settings: Options.
+
+    Raises:
+        ChainError: It does not solve this kind of chain.
+        PluginError: It failed.
+    """
+
+    def __init__(self, bound: Bound, chain: Chain, settings: Settings) -> None:
+        self._bound, self._settings = bound, settings
+        self.chain = chain
+        self._batch = prepare(bound, chain, settings)
+
+    def moved(self, position: Array, rotation: Array) -> "WholeSolver":
+        """Return the solver for the chain with its base elsewhere."""
+        return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)
+
+    def solve(
+        self,
+        goal: Array,
+        *,
+        goal_rotation: Array | None = None,
+        fk_offsets: Array | None = None,
+        continuity: Continuity | None = None,
+        trace: bool = False,
+    ) -> Solution:
+        """Solve one goal.
+
+        A solver of pose goals follows the orientation too, (3, 3) or NaN, and starts from the
+        pose of the continuity; another one has no use for more than the goal.
+        """
+        rows = np.asarray(goal, np.float64).reshape(1, 3)
+        if not isinstance(self._batch, PoseBatch):
+            return self._batch(rows, False).single(0)
+        turned = None if goal_rotation is None else goal_rotation[None]
+        near = None if continuity is None else continuity.angles
+        found = self._batch.solve_poses(rows, turned, False, near).single(0)
+        return replace(found, continuity=Continuity.from_pose(found.angles))
+
+
+def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
     """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
-    if turns_end or model.solver == "2d" or model.trajectory is not None:
-        return
-    if isinstance(model.goals, CsvModel):
+    planned = isinstance(model, SceneModel) and model.trajectory is not None
+    if turns_end or planned or model.solver == "2d" or not isinstance(model.goals, list):
         return
     for number, goal in enumerate(model.goals):
         if goal.turn is not None:

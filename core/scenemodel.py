@@ -29,7 +29,7 @@ FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
-def _version(value: Any) -> Any:
+def check_version(value: Any) -> Any:
     """Refuse true, which Python takes for 1."""
     if isinstance(value, bool):
         message = "must be 1, not {found}"
@@ -203,6 +203,16 @@ class CsvModel(Model):
     csv: Annotated[str, Field(min_length=1, description="path relative to the scene")]
 
 
+class NpzModel(Model):
+    """Goals in an NPZ file, such as `limbik bake` and `limbik trajectory` write."""
+
+    npz: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+    array: Annotated[
+        str | None,
+        Field(min_length=1, description="array of (m, 3) positions; absent = goals or positions"),
+    ] = None
+
+
 class JudgeModel(Model):
     """What a motion is judged by: its goals are a path at a steady rate."""
 
@@ -214,7 +224,9 @@ class JudgeModel(Model):
 
 
 def _goals_form(value: Any) -> str:
-    return "csv" if isinstance(value, dict) else "list"
+    if isinstance(value, dict):
+        return "npz" if "npz" in value else "csv"
+    return "list"
 
 
 def _chosen(value: Any) -> Any:
@@ -225,13 +237,9 @@ def _chosen(value: Any) -> Any:
     raise PydanticCustomError("type", message, {"found": found_words(value)})
 
 
-class SceneModel(Model):
-    """A whole scene file."""
+class SolveModel(Model):
+    """How a chain is solved, and for which goals."""
 
-    limbik: Annotated[
-        Literal[1], BeforeValidator(_version), Field(description="version of the format")
-    ]
-    chain: ChainModel
     solver: Annotated[
         Any, AfterValidator(_chosen), Field(description="name of the solver, or {use: name, ...}")
     ] = "3d"
@@ -245,10 +253,28 @@ class SceneModel(Model):
         bool, Field(description="solve the goals as a path, each from the pose before it")
     ] = False
     judge: Annotated[JudgeModel | None, Field(description="thresholds for `limbik judge`")] = None
+    axes: Annotated[
+        Literal["limbik", "y-up", "z-up"],
+        Field(
+            description="axes the positions of goals and pole are given in: limbik's, or "
+            "right-handed with Y up as clips have them, or with Z up as robots have them"
+        ),
+    ] = "limbik"
+    goals: Annotated[
+        Annotated[list[GoalModel], Tag("list")]
+        | Annotated[CsvModel, Tag("csv")]
+        | Annotated[NpzModel, Tag("npz")],
+        Discriminator(_goals_form),
+    ]
+
+
+class SceneModel(SolveModel):
+    """A whole scene file."""
+
+    limbik: Annotated[
+        Literal[1], BeforeValidator(check_version), Field(description="version of the format")
+    ]
+    chain: ChainModel
     trajectory: Annotated[
         TrajectoryModel | None, Field(description="key points and moves between them")
     ] = None
-    goals: Annotated[
-        Annotated[list[GoalModel], Tag("list")] | Annotated[CsvModel, Tag("csv")],
-        Discriminator(_goals_form),
-    ]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from limbik.core.posegoals import solve_turned
+from limbik.core.posegoals import WholeSolver, solve_turned
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Continuity, Solution
@@ -84,6 +84,13 @@ def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
         return Solver(scene.chain, scene.settings, registry)
     solver = Solver2D(scene.chain, scene.settings, registry, pole=scene.pole)
     return solver.bind() if scene.bind else solver
+
+
+def single_solver(scene: Scene, registry: Registry | None = None) -> Solver | WholeSolver:
+    """Return whatever solver a scene asks for, to be called goal by goal; see `scene_solver`."""
+    if scene.solver is not None:
+        return WholeSolver(scene.solver, scene.chain, scene.settings)
+    return scene_solver(scene, registry)
 
 
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:

@@ -9,12 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
+from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import hpb_to_matrix
 from limbik.core.solver import Solver
 from limbik.plugins.judging import curve, limits, mirror, motion, reach, replay, soundness
 from limbik.plugins.judging.catalogue import BY_NAME, METRICS
-from limbik.plugins.judging.run import NotJudged, Run, turn_between
+from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import log_jerk
 
 Array = NDArray[np.float64]

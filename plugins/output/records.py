@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from limbik.core.body import BodySolution, bodies_met, chain_solutions
+from limbik.core.bodyscene import BodyScene
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
 from limbik.core.posegoals import PoseSolution
@@ -57,6 +59,32 @@ def solve_record(
     }
 
 
+def body_record(
+    scene: BodyScene, found: Sequence[BodySolution], stages: bool = False
+) -> dict[str, Any]:
+    """Describe what became of every frame of a scene with several chains.
+
+    Args:
+        scene: The scene.
+        found: One solution a frame.
+        stages: As in `solve_record`.
+    """
+    chains = []
+    for part, solutions in zip(scene.parts, chain_solutions(found).values(), strict=True):
+        record = solve_record(part.scene, solutions, stages)
+        chains.append({"name": part.name, "joints": record["joints"], "goals": record["goals"]})
+    return {
+        "status": "ok" if bodies_met(scene, found) else "unreached",
+        "scene": scene.document.name,
+        "skeleton": {"joints": list(scene.skeleton.names), "parents": list(scene.skeleton.parents)},
+        "chains": chains,
+        "frames": [
+            {"name": name, "positions": body.positions.tolist()}
+            for name, body in zip(scene.frame_names, found, strict=True)
+        ],
+    }
+
+
 def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
     record: dict[str, Any] = {
         "name": name,
@@ -98,15 +126,29 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
     return record
 
 
-def check_record(scenes: Sequence[Scene]) -> dict[str, Any]:
+def check_record(scenes: Sequence[Scene | BodyScene]) -> dict[str, Any]:
     """Describe scenes that were found good."""
     return {
         "status": "ok",
         "scenes": [
-            {"file": s.document.name, "joints": list(s.chain.names), "goals": len(s.goals)}
+            _counts(s) if isinstance(s, Scene) else {**_body_counts(s), "chains": _parts(s)}
             for s in scenes
         ],
     }
+
+
+def _counts(scene: Scene) -> dict[str, Any]:
+    joints = list(scene.chain.names)
+    return {"file": scene.document.name, "joints": joints, "goals": len(scene.goals)}
+
+
+def _body_counts(scene: BodyScene) -> dict[str, Any]:
+    joints = list(scene.skeleton.names)
+    return {"file": scene.document.name, "joints": joints, "frames": len(scene.frame_names)}
+
+
+def _parts(scene: BodyScene) -> list[dict[str, Any]]:
+    return [{"name": p.name, "joints": list(p.scene.chain.names)} for p in scene.parts]
 
 
 def failure_record(error: BaseException, status: str) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.body import BodySolution, chain_solutions
+from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Inspection
 from limbik.core.posegoals import PoseSolution
 from limbik.core.rotation import Array
@@ -65,6 +67,13 @@ def _turned_off(solution: Solution) -> str:
     if not isinstance(solution, PoseSolution) or np.isnan(solution.goal_rotation).any():
         return ""
     return f"{np.degrees(float(solution.rotation_error)):.2g}°"
+
+
+def print_body(scene: BodyScene, found: Sequence[BodySolution]) -> None:
+    """Print one table a chain, in the order they were solved."""
+    for part, solutions in zip(scene.parts, chain_solutions(found).values(), strict=True):
+        new_console().print(Text(f"\n{part.name}", "bold"))
+        print_solutions(part.scene, solutions)
 
 
 def _fitting(columns: dict[str, list[str]], room: int) -> tuple[list[str], int]:
@@ -146,9 +155,11 @@ def print_inspection(inspection: Inspection) -> None:
         console.print(Text(f"note: {note}", "yellow"))
 
 
-def print_metrics(metrics: dict[str, Any]) -> None:
-    """Print what a baked motion is like, in a few lines."""
+def print_metrics(metrics: dict[str, Any], chain: str = "") -> None:
+    """Print what a baked motion is like, in a few lines; under the chain's name if it has one."""
     console = new_console()
+    if chain:
+        console.print(Text(chain, "bold"))
     frames, reached = metrics["frames"], metrics["reached"]
     style = "green" if reached == frames else "red"
     worst = f"largest distance {metrics['worst_distance']:.2g}"
