@@ -99,7 +99,7 @@ def bake_body(
     found = []
     for number, body in enumerate(solver.frames(scene.goals), 1):
         found.append(body)
-        if progress is not None and number % BLOCK == 0:
+        if progress is not None and (number % BLOCK == 0 or number == len(scene.frame_names)):
             progress(number)
     seconds = frame_time or scene.frame_time or FRAME_TIME
     solutions = {name: stacked(of) for name, of in chain_solutions(found).items()}

@@ -130,6 +130,7 @@ class BodySolver:
         goals: Mapping[str, ArrayLike],
         *,
         frame: int = 0,
+        poles: Mapping[str, ArrayLike] | None = None,
         continuity: Mapping[str, Continuity] | None = None,
         trace: bool = False,
     ) -> BodySolution:
@@ -139,6 +140,7 @@ class BodySolver:
             goals: A position for each chain, by its name, (3,) [length], in the world or the
                 chain's frame; a chain without one stays as the skeleton has it.
             frame: Frame of the skeleton's own motion to start from.
+            poles: Other positions for the poles of chains with the 2D solver, likewise.
             continuity: What an earlier solve returned; None solves without a past.
             trace: Whether the solutions keep every stage's pose; slower.
 
@@ -146,7 +148,8 @@ class BodySolver:
             InputError: There is no such chain or frame, or a goal is not three finite numbers.
             PluginError: A strategy failed.
         """
-        self._check(goals, frame)
+        poles = poles or {}
+        self._check(goals, poles, frame)
         motion = self.skeleton.motion
         at = frame if len(motion.turns) > 1 else 0
         places, rotations = self._places[at].copy(), self._rotations[at].copy()
@@ -154,6 +157,8 @@ class BodySolver:
         for chain, moves in zip(self.chains, self._moves, strict=True):
             if chain.name in goals:
                 goal = checked(goals[chain.name], (3,), f"goal of '{chain.name}'")
+                if chain.name in poles:
+                    chain = _with_pole(chain, poles[chain.name])
                 before = (continuity or {}).get(chain.name)
                 solution = self._solve(chain, goal, frame, before, trace, found)
                 moves.carry(solution, motion.offsets[at], motion.turns[at], found)
@@ -179,15 +184,17 @@ class BodySolver:
             raise InputError(f"goals: every chain needs as many, found {sorted(counts)}")
         followed = {chain.name for chain in self.chains if chain.follow}
         kept: dict[str, Continuity] = {}
-        for frame in range(*counts):
+        for frame in range(max(counts, default=0)):
             given = {name: places[frame] for name, places in rows.items()}
             found = self.solve(given, frame=frame, continuity=kept, trace=trace)
             kept = {name: past for name, past in found.continuity.items() if name in followed}
             yield found
 
-    def _check(self, goals: Mapping[str, ArrayLike], frame: int) -> None:
+    def _check(
+        self, goals: Mapping[str, ArrayLike], poles: Mapping[str, ArrayLike], frame: int
+    ) -> None:
         names = [chain.name for chain in self.chains]
-        for name in goals:
+        for name in (*goals, *poles):
             if name not in names:
                 hint = near_match(name, names) or f"chains: {', '.join(names)}"
                 raise InputError(Fault("unknown-chain", f"no chain is called '{name}'", hint=hint))
@@ -230,6 +237,14 @@ class BodySolver:
         if solution.continuity is not None:
             found.continuity[chain.name] = solution.continuity
         return solution
+
+
+def _with_pole(chain: BodyChain, pole: ArrayLike) -> BodyChain:
+    """Return a chain with its pole elsewhere, in the chain's frame."""
+    if not isinstance(chain.solver, Solver2D):
+        raise InputError(f"pole of '{chain.name}': only the 2D solver has a pole")
+    place = checked(pole, (3,), f"pole of '{chain.name}'")
+    return replace(chain, solver=chain.solver.with_pole(place))
 
 
 class _Moves:

@@ -166,6 +166,19 @@ def test_a_pole_in_a_joints_frame_moves_with_it() -> None:
     assert solution.reached
 
 
+def test_a_pole_can_be_dragged() -> None:
+    """Given with the goals or written into the scene, it is the same pole."""
+    more = "    frame: neck\n    solver: 2d\n    pole: {position: [-60, 0, 10]}\n"
+    text = arm("L", "[{position: [-3, 40, 10]}]", more)
+    text = text.replace(f"    options: {OPTION_LINE}\n", "")
+    goals = {"spine": [0, 130, 12], "arm.L": [-3, 40, 10]}
+    there = BodySolver.of(body(SPINE + text), REGISTRY).solve(goals)
+    elsewhere = BodySolver.of(body(SPINE + text.replace("[-60, 0, 10]", "[9, 50, 60]")), REGISTRY)
+    assert (elsewhere.solve(goals).positions != there.positions).any()
+    dragged = elsewhere.solve(goals, poles={"arm.L": [-60, 0, 10]})
+    assert (dragged.positions == there.positions).all()
+
+
 def test_a_chain_with_one_goal_keeps_it_in_all_frames() -> None:
     several = "[{name: a, position: [-20, 110, 40]}, {name: b, position: [-30, 90, 30]}]"
     scene = body(SPINE + arm("L", several))
@@ -237,6 +250,10 @@ WRONG: list[tuple[Callable[[BodySolver], object], str]] = [
     (lambda s: s.solve({"spin": [0, 0, 1]}), "no chain is called 'spin' (did you mean 'spine'?)"),
     (lambda s: s.solve({"spine": [0, 1]}), "goal of 'spine': expected shape (3,), found (2,)"),
     (lambda s: s.solve({"spine": [0, 1, np.nan]}), "goal of 'spine': every number must be finite"),
+    (
+        lambda s: s.solve({"spine": [0, 0, 1]}, poles={"spine": [0, 1, 0]}),
+        "pole of 'spine': only the 2D solver has a pole",
+    ),
     (
         lambda s: list(s.frames({"spine": np.zeros((2, 3)), "arm.L": np.zeros((3, 3))})),
         "goals: every chain needs as many, found [2, 3]",
