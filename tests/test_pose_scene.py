@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from limbik.core.baking import bake_scene
+from limbik.core.body import solve_body
+from limbik.core.bodyscene import body_from
 from limbik.core.errors import SceneError
 from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
@@ -157,3 +159,31 @@ def test_a_scene_with_a_trajectory_needs_no_goals() -> None:
         bake_scene(read, REGISTRY)
     assert "goals: key 'goals' is missing" in faults(HEAD)[0]
     assert "at least one goal is needed" in faults(text + "goals: []\n")[0]
+
+
+BODY = """\
+limbik: 1
+skeleton:
+  joints:
+    - {name: hips, offset: [0, 90, 0], frozen: [0, 90, 0]}
+    - {name: neck, parent: hips, offset: [0, 0, 45]}
+    - {name: shoulder, parent: neck, offset: [18, 0, -5], frozen: [0, 180, 0]}
+    - {name: elbow, parent: shoulder, offset: [0, 0, 30]}
+    - {name: hand, parent: elbow, offset: [0, 0, 26]}
+chains:
+  - name: arm
+    base: shoulder
+    end: hand
+    solver: refine
+    follow: true
+    goals: [{position: [40, 110, 20], rotation: [10, 20, -30]}]
+"""
+
+
+def test_a_chain_of_a_body_is_put_on_its_pose() -> None:
+    read = body_from(read_yaml(BODY, "s.yaml"), Path("/nowhere"), REGISTRY)
+    (found,) = solve_body(read, REGISTRY)
+
+    assert found.solutions["arm"].reached
+    np.testing.assert_allclose(found.positions[4], [40.0, 110.0, 20.0], atol=1e-2)
+    np.testing.assert_allclose(found.solutions["arm"].rotations[-1], TURN, atol=1e-3)
