@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,16 +112,14 @@ class WholeSolver:
     ) -> Solution:
         """Solve one goal.
 
-        A solver of pose goals follows the orientation too, (3, 3) or NaN, and starts from the
-        pose of the continuity; another one has no use for more than the goal.
+        A solver of pose goals follows the orientation too, (3, 3) or NaN; such solvers have no use
+        for the rest.
         """
         rows = np.asarray(goal, np.float64).reshape(1, 3)
         if not isinstance(self._batch, PoseBatch):
             return self._batch(rows, False).single(0)
         turned = None if goal_rotation is None else goal_rotation[None]
-        near = None if continuity is None else continuity.angles
-        found = self._batch.solve_poses(rows, turned, False, near).single(0)
-        return replace(found, continuity=Continuity.from_pose(found.angles))
+        return self._batch.solve_poses(rows, turned, False).single(0)
 
 
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:

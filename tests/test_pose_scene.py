@@ -175,7 +175,6 @@ chains:
     base: shoulder
     end: hand
     solver: refine
-    follow: true
     goals: [{position: [40, 110, 20], rotation: [10, 20, -30]}]
 """
 
