@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from limbik.core.solver import Solver as Solver
     from limbik.core.solver2d import Solver2D as Solver2D
     from limbik.core.strategy import Strategy as Strategy
+    from limbik.plugins.solvers.refine.solver import PoseSolver as PoseSolver
 
 __version__ = "0.1.0"
 
@@ -42,6 +43,7 @@ _PUBLIC = {
     "JointSkeleton": "limbik.core.skeleton",
     "Pole": "limbik.core.pole",
     "PoleRotor": "limbik.core.pole",
+    "PoseSolver": "limbik.plugins.solvers.refine.solver",
     "LimbikError": "limbik.core.errors",
     "Match": "limbik.core.match",
     "Registry": "limbik.core.registry",

@@ -11,9 +11,10 @@ from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Bake, BodyBake, Motion
 from limbik.core.mirror import mirrored_solution, side_swapped
 from limbik.core.motion import motion_metrics
+from limbik.core.posegoals import solve_turned
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.scene import Scene
+from limbik.core.scene import Scene, require_goals
 from limbik.core.skeleton import Limb, Skeleton
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
@@ -54,9 +55,12 @@ def bake_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
+    require_goals(scene)
     if scene.solver is not None:
-        parts = [prepare(scene.solver, scene.chain, scene.settings)(scene.goals, scene.follow)]
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        parts = [solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)]
     else:
         parts = _blocks(scene, registry, progress)
     solution = _joined(parts)

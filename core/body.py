@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike
 from limbik.core.bodyorder import order_faults
 from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import Fault, InputError
+from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.skeleton import WORLD, Limb, Skeleton
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.solving import single_solver
-from limbik.core.whole import WholeSolver
 from limbik.core.wording import near_match
 
 
@@ -219,11 +219,17 @@ class BodySolver:
             "continuity": before,
             "trace": trace,
         }
-        if isinstance(solver, Solver2D) and chain.turns is not None:
-            asked["goal_turn"] = chain.turns[min(frame, len(chain.turns) - 1)]
+        if chain.turns is not None:
+            turned = chain.turns[min(frame, len(chain.turns) - 1)]
+            if isinstance(solver, Solver2D):
+                asked["goal_turn"] = turned
+            if isinstance(solver, WholeSolver):
+                asked["goal_rotation"] = hpb_to_matrix(turned)
         if chain.frame != WORLD:
             origin, axes = found.positions[chain.frame], found.rotations[chain.frame]
             goal = origin + axes @ goal
+            if "goal_rotation" in asked:
+                asked["goal_rotation"] = axes @ asked["goal_rotation"]
             if isinstance(solver, Solver2D):
                 solver = solver.with_pole(origin + axes @ np.array(solver.pole.position))
         solution = solver.solve(goal, **asked)

@@ -21,7 +21,10 @@ def _choices(content: Any) -> Iterator[tuple[str, Any]]:
 
 
 def checkable(content: Any) -> Any:
-    """Leave out choices without a strategy's name: `strategy_faults` has them already."""
+    """Leave out choices without a strategy's name: `strategy_faults` has them already.
+
+    A scene with a trajectory needs no goals.
+    """
     nameless = [
         slot
         for slot, choice in _choices(content)
@@ -29,6 +32,8 @@ def checkable(content: Any) -> Any:
         and isinstance(choice, dict)
         and not isinstance(choice.get("use"), str)
     ]
+    if isinstance(content, dict) and "trajectory" in content:
+        content = {"goals": [], **content}
     if not nameless:
         return content
     options = {key: value for key, value in content["options"].items() if key not in nameless}

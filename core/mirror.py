@@ -15,6 +15,7 @@ import numpy as np
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.frames import Y_UP, mirror_hpb
+from limbik.core.posegoals import PoseSolution
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
@@ -47,6 +48,8 @@ def mirrored_solution(solution: Solution) -> Solution:
         continuity=None,
         trace=None,
     )
+    if isinstance(mirrored, PoseSolution):
+        return replace(mirrored, goal_rotation=Y_UP.rotations(mirrored.goal_rotation))
     return _mirrored_plane(mirrored) if isinstance(mirrored, PlanarSolution) else mirrored
 
 

@@ -16,7 +16,7 @@ axes: limbik                   # optional: y-up or z-up if positions are right-h
 judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
 solver: 3d                     # optional: 2d bends in the plane of base, goal and pole ...
 pole: {position: [0, 9, 9]}    # ... which 2d needs; see `limbik.core.scenemodel.PoleModel`
-goals:                         # a list, {csv: goals.csv} or {npz: motion.npz}
+goals:                         # a list, {csv: goals.csv}, {npz: motion.npz}; optional beside those
   - {name: mouth, position: [1, 2, 3]}
 ```
 
@@ -42,6 +42,7 @@ from limbik.core.choices import checkable, strategy_faults
 from limbik.core.errors import ChainError, Fault, SceneError, shortlist
 from limbik.core.formats import Body
 from limbik.core.pole import Pole
+from limbik.core.posegoals import PoseBatch, turn_faults
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenegoals import axes_faults, goals_of, pole_of, turns_of, twice
@@ -212,7 +213,8 @@ def build_scene(
     solver = None
     try:
         if chain is not None and not found:
-            solver = _solver(model, chain, registry)
+            solver, turns_end = _solver(model, chain, registry)
+            found += turn_faults(model, turns_end, document)
     except ChainError as error:
         found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
     goal_names, goals, goal_faults = goals_of(model, document, folder)
@@ -251,6 +253,18 @@ def require_own_solver(scene: Scene, what: str) -> None:
     if scene.solver is not None:
         message = f"{what} needs limbik's own solver, 3d, not '{scene.solver.name}'"
         raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
+
+
+def require_goals(scene: Scene) -> None:
+    """Refuse a scene that has a trajectory and no goals.
+
+    Raises:
+        SceneError: It has none.
+    """
+    if not len(scene.goals):
+        hint = "'limbik trajectory' solves its trajectory"
+        fault = scene.document.fault("missing-key", "the scene has no goals", hint=hint)
+        raise SceneError([fault])
 
 
 def _joint_faults(names: Sequence[str], document: Document) -> Iterator[Fault]:
@@ -293,13 +307,14 @@ def _chain(model: SceneModel) -> Chain:
     return Chain([joint_of(joint) for joint in model.chain.joints], base.position, turn)
 
 
-def _solver(model: SolveModel, chain: Chain, registry: Registry | None) -> Bound | None:
-    """Bind the scene's solver; it refuses chains it does not solve."""
+def _solver(
+    model: SolveModel, chain: Chain, registry: Registry | None
+) -> tuple[Bound | None, bool]:
+    """Bind the scene's solver; it refuses chains it does not solve. Tell if it turns the end."""
     if model.solver in OWN_SOLVERS:
-        return None
+        return None, False
     bound = (registry or Registry()).bind(SOLVER.name, model.solver)
-    prepare(bound, chain, model.options)
-    return bound
+    return bound, isinstance(prepare(bound, chain, model.options), PoseBatch)
 
 
 def joint_of(joint: JointModel) -> Joint:

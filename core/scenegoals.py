@@ -44,10 +44,10 @@ def axes_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
         message = "a trajectory is in limbik's axes"
         yield document.fault("axes", message, ("axes",), hint="leave 'axes' out")
     for number, goal in enumerate(model.goals if isinstance(model.goals, list) else ()):
-        if goal.rotation is not None:
-            message = "heading, pitch and bank are in limbik's axes"
+        if goal.turn_key:
+            message = "an orientation is in limbik's axes"
             hint = "leave 'axes' out and give the positions in limbik's axes too"
-            yield document.fault("axes", message, ("goals", number, "rotation"), hint=hint)
+            yield document.fault("axes", message, ("goals", number, goal.turn_key), hint=hint)
 
 
 def _given(
@@ -61,11 +61,11 @@ def _given(
         return _of_table(read_goal_arrays(path, model.goals.array), "npz", document)
     given = [goal.name for goal in model.goals]
     faults = list(twice(given, ("goals",), "goal", document))
-    if not model.goals:
+    if not model.goals and "goals" in document.content:
         message = "at least one goal is needed"
         faults.append(document.fault("empty", message, ("goals",)))
     names = tuple(name or str(number) for number, name in enumerate(given, 1))
-    return names, np.array([goal.position for goal in model.goals]).reshape(-1, 3), faults
+    return names, np.array([goal.place for goal in model.goals]).reshape(-1, 3), faults
 
 
 def _of_table(
@@ -88,9 +88,10 @@ def _of_table(
 
 def turns_of(model: SolveModel) -> Array | None:
     """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
-    if not isinstance(model.goals, list) or not any(goal.rotation for goal in model.goals):
+    turns = [goal.turn for goal in model.goals] if isinstance(model.goals, list) else []
+    if all(turn is None for turn in turns):
         return None
-    return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
+    return np.array([np.full(3, np.nan) if turn is None else turn for turn in turns])
 
 
 def twice(

@@ -26,7 +26,7 @@ def solver_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     if not isinstance(model.goals, list) or (model.pole is not None and model.pole.rotor):
         return
     for number, goal in enumerate(model.goals):
-        if goal.rotation is not None and model.pole is not None:
+        if goal.turn is not None and model.pole is not None:
             message = "nothing turns with this goal; it moves a pole rotor"
             hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
-            yield document.fault("solver", message, ("goals", number, "rotation"), hint=hint)
+            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)

@@ -43,7 +43,8 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
     _take_in("SceneModel", "chain", chains, definitions)
     _goals_may_be_absent("SceneModel", definitions)
     held = [{"properties": {"chain": {"required": [name]}}} for name in clips]
-    definitions["SceneModel"]["anyOf"] = [{"required": ["goals"]}, *held]
+    goals = [{"required": ["goals"]}, {"required": ["trajectory"]}]
+    definitions["SceneModel"]["anyOf"] = [*goals, *held]
     skeletons = {given.name: given.skeleton.model for given in inputs if given.skeleton}
     _take_in("BodyModel", "skeleton", skeletons, definitions)
     _goals_may_be_absent("PartModel", definitions)

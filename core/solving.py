@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from typing import Any
 
+from limbik.core.posegoals import WholeSolver, solve_turned
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
+from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import WholeSolver, prepare, singles
+from limbik.core.whole import prepare
 
 
 def solve_scene(
@@ -26,10 +27,10 @@ def solve_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
-    if scene.solver is not None:
-        return list(singles(solve_goals(scene, registry)))
-    if not trace:
+    require_goals(scene)
+    if scene.solver is not None or not trace:
         found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]
     solver = scene_solver(scene, registry)
@@ -61,7 +62,7 @@ def solve_goals(
     """
     if scene.solver is not None:
         batch = prepare(scene.solver, scene.chain, scene.settings)
-        return batch(scene.goals, scene.follow)
+        return solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)
     return solve_part(scene_solver(scene, registry), scene, slice(None), threads=threads)
 
 

@@ -2,11 +2,12 @@
 
 Such a strategy's `kernel` is no compiled step but a Python function `(chain, settings, params)`,
 params in radians. It looks at the chain, raises `ChainError` if it cannot solve this kind, and
-returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis. It must be quick
-and load no compiler: `limbik check` calls it.
+returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis, or a
+`limbik.core.posegoals.PoseBatch` if it turns the end to an orientation too. It must be quick and
+load no compiler: `limbik check` calls it.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 from limbik.core.slots import SOLVER
-from limbik.core.solution import Continuity, Solution, Status
+from limbik.core.solution import Solution
 from limbik.core.strategy import flatten, unflatten
 
 BUILT_IN_3D = "3d"
@@ -61,59 +62,6 @@ def prepare(bound: Bound, chain: Chain, settings: Settings) -> Batch:
         cause = f"{type(error).__name__}: {error}"
         raise PluginError(cause, bound.plugin.name, bound.name, SOLVER.name) from error
     return batch
-
-
-class WholeSolver:
-    """A solver of a plug-in for one chain, called as `limbik.core.solver.Solver` is.
-
-    Args:
-        bound: The solver.
-        chain: What to pose.
-        settings: Options.
-
-    Raises:
-        ChainError: It does not solve this kind of chain.
-        PluginError: It failed.
-    """
-
-    def __init__(self, bound: Bound, chain: Chain, settings: Settings) -> None:
-        self._bound, self._settings = bound, settings
-        self.chain = chain
-        self._batch = prepare(bound, chain, settings)
-
-    def moved(self, position: Array, rotation: Array) -> "WholeSolver":
-        """Return the solver for the chain with its base elsewhere."""
-        return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)
-
-    def solve(
-        self,
-        goal: Array,
-        *,
-        fk_offsets: Array | None = None,
-        continuity: Continuity | None = None,
-        trace: bool = False,
-    ) -> Solution:
-        """Solve one goal on its own; such a solver has no use for the rest."""
-        return next(singles(self._batch(np.asarray(goal, np.float64).reshape(1, 3), False)))
-
-
-def singles(many: Solution) -> Iterator[Solution]:
-    """Take a solution with a leading goal axis apart."""
-    for k in range(len(many.goal)):
-        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
-        yield WholeSolution(
-            many.chain,
-            many.goal[k],
-            many.angles[k],
-            many.positions[k],
-            many.rotations[k],
-            int(np.asarray(many.iterations)[k]),
-            float(np.asarray(many.distance)[k]),
-            Status(int(np.asarray(many.status)[k])),
-            many.bend_vector[k],
-            float(np.asarray(many.bend_angle)[k]),
-            notes=notes,
-        )
 
 
 def assemble(

@@ -24,5 +24,6 @@ BUILT_IN = (
     "limbik.plugins.solvers.fabrik.solver",
     "limbik.plugins.solvers.lambda_leg.solver",
     "limbik.plugins.solvers.planar.solver",
+    "limbik.plugins.solvers.refine.solver",
 )
 """Modules the registry loads first; a new one is added here."""

@@ -8,6 +8,7 @@ import pytest
 from limbik.core.body import solve_body
 from limbik.core.bodyscene import read_body
 from limbik.core.pose import forward_kinematics
+from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.core.solving import solve_scene
@@ -31,7 +32,9 @@ def test_every_goal_is_reached_by_the_pose_itself_and_within_limits(path: Path) 
 
     assert len(solutions) == 10
     for name, goal, solution in zip(scene.goal_names, scene.goals, solutions, strict=True):
-        positions, _ = forward_kinematics(scene.chain, solution.angles)
+        positions, rotations = forward_kinematics(scene.chain, solution.angles)
+        if isinstance(solution, PoseSolution) and np.isfinite(solution.goal_rotation).all():
+            assert np.abs(rotations[-1] - solution.goal_rotation).max() < 1e-6, name
         assert np.linalg.norm(positions[-1] - goal) <= scene.settings.tolerance, name
         assert (solution.angles >= scene.chain.low - 1e-9).all(), name
         assert (solution.angles <= scene.chain.high + 1e-9).all(), name

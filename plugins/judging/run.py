@@ -9,7 +9,7 @@ from limbik.core.chain import Chain
 from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scene import Scene, require_own_solver
+from limbik.core.scene import Scene, require_goals, require_own_solver
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
@@ -101,6 +101,7 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     """
     rate = RATE if scene.judge is None else scene.judge.rate
     require_own_solver(scene, "limbik judge")
+    require_goals(scene)
     solver = scene_solver(scene, registry)
     solution = solve_part(solver, scene, slice(None))
     turned = scene.goal_turns is not None

@@ -16,6 +16,7 @@ from limbik.core.body import BodySolution, bodies_met, chain_solutions
 from limbik.core.bodyscene import BodyScene
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
+from limbik.core.posegoals import PoseSolution
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
@@ -99,6 +100,10 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "bend_vector": solution.bend_vector.tolist(),
         "at_limits": list(solution.limits_touched()),
     }
+    if isinstance(solution, PoseSolution):
+        record["goal_rotation"] = solution.goal_rotation.tolist()
+        record["rotation_error"] = float(np.degrees(solution.rotation_error))
+        record["jumped"] = bool(solution.jumped)
     if isinstance(solution, PlanarSolution):
         record["planar"] = {
             "angles": np.degrees(solution.planar_angles).tolist(),

@@ -7,6 +7,7 @@ from limbik.core.errors import Fault, InputError
 TEMPLATES = (
     "arm",
     "arm7",
+    "arm7-pose",
     "body",
     "cosine-arm",
     "finger",
@@ -21,6 +22,7 @@ TEMPLATES = (
 )
 _WITH_FILES = {  # what a scene is read with
     "arm7": "arm7.urdf",
+    "arm7-pose": "arm7.urdf",
     "body": "humanoid.urdf",
     "humanoid": "humanoid.urdf",
     "walk": "walk.bvh",
