@@ -28,14 +28,14 @@ def view(
     limbik view leg-pole.yaml --open
     """
     with reported():
+        from limbik.core.bodyscene import read_any
         from limbik.core.registry import Registry
-        from limbik.core.scene import read_scene
         from limbik.plugins.viewer.server import Viewer, check_viewer
         from limbik.plugins.viewer.session import Session
 
         check_viewer()
         registry = Registry()
-        read = read_scene(scene, registry)
+        read = read_any(scene, registry)
         say_notes(read)
         announce_compiling()
         viewer = Viewer(Session(read, registry), host, port)

@@ -1,5 +1,6 @@
 """A chain on the page: nodes made once and moved with every solve."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,14 +19,16 @@ from limbik.plugins.viewer.looks import (
     CONE,
     JOINT,
     LINES,
+    REST,
     SHOWN_AT_FIRST,
     TRIAD,
     Colour,
 )
-from limbik.plugins.viewer.session import Shown
+from limbik.plugins.viewer.session import Session, Shown
 from limbik.plugins.viewer.shapes import along, ball, bone, cone, segments
 
 NOWHERE = np.zeros((1, 2, 3))
+MOST_ARCS = 8  # joints of a chain whose ranges are shown unasked
 _AXES = {"x": 0, "y": 1, "z": 2}
 
 
@@ -99,9 +102,12 @@ class ChainDrawing:
         name: Of the node.
         shown: What it begins with.
         size: Thickness of a joint [length].
+        plain: Whether ranges and bend direction wait until they are asked for.
     """
 
-    def __init__(self, scene: SceneApi, name: str, shown: Shown, size: float) -> None:
+    def __init__(
+        self, scene: SceneApi, name: str, shown: Shown, size: float, plain: bool = False
+    ) -> None:
         self._size, self._reach = size, shown.solution.chain.length
         self.limb = Limb(scene, name, len(shown.positions), size)
         self.colours = dict(LINES)
@@ -112,7 +118,7 @@ class ChainDrawing:
                 colour,
                 thickness=2.5,
                 thickness_units="screen",
-                visible=line in SHOWN_AT_FIRST,
+                visible=line in SHOWN_AT_FIRST and not plain,
             )
             for line, colour in LINES.items()
         }
@@ -129,7 +135,7 @@ class ChainDrawing:
         self._cone: Any = None
         self._cone_is: tuple[Any, ...] = ()
         self._scene, self._name = scene, name
-        self.with_limits = len(shown.positions) <= 8
+        self.with_limits = not plain and len(shown.positions) <= MOST_ARCS
         self.update(shown)
 
     def update(self, shown: Shown) -> None:
@@ -221,6 +227,33 @@ class ChainDrawing:
                 )
         if self._cone is not None:
             self._cone.position = place
+
+
+class SkeletonDrawing:
+    """The bones of a body that no chain moves by itself.
+
+    Args:
+        scene: Of the page.
+        session: What is shown.
+    """
+
+    def __init__(self, scene: SceneApi, session: Session) -> None:
+        self._pairs: list[tuple[int, int]] = []
+        if session.body is not None:
+            limbs = [part.limb.at for part in session.body.parts]
+            drawn = {pair for at in limbs for pair in pairwise(at)}
+            above = session.body.skeleton.parents
+            pairs = [(parent, joint) for joint, parent in enumerate(above) if parent >= 0]
+            self._pairs = [pair for pair in pairs if pair not in drawn]
+        self._lines = scene.add_line_segments(
+            "/skeleton", NOWHERE, REST, thickness=3.0, thickness_units="screen"
+        )
+
+    def update(self, session: Session) -> None:
+        """Draw the last solve."""
+        if session.whole is not None and self._pairs:
+            ends = session.whole.positions[np.array(self._pairs)]
+            _set(self._lines, to_page(ends), np.tile(REST, (len(ends), 1)))
 
 
 def blocking(solution: Solution) -> set[int]:

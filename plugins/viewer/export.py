@@ -5,11 +5,9 @@ from typing import Any
 import numpy as np
 import yaml
 
-from limbik.core.rotation import Array
-from limbik.core.scene import Scene
 from limbik.plugins.viewer.session import Chained, Session
 
-_LEFT_OUT = ("pole", "judge", "trajectory")  # written anew, or about the whole path
+_LEFT_OUT = ("pole", "axes", "judge", "trajectory")  # written anew, or about the whole path
 
 
 def scene_text(session: Session) -> str:
@@ -18,22 +16,23 @@ def scene_text(session: Session) -> str:
     What the scene says of the chain stays as it is written there, so that a path to a robot or a
     clip needs the same folder.
     """
-    one = session.chain
-    written = _document(one.setup.given).items()
-    content = {key: value for key, value in written if key not in _LEFT_OUT}
-    content |= _solve_keys(one)
-    content["follow"] = session.follow
+    if session.body is None:
+        content = _changed(session.chain, session)
+    else:
+        content = dict(session.body.document.content)
+        content["chains"] = [_changed(one, session) for one in session.chains.values()]
     text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, allow_unicode=True)
     return f"# Saved by `limbik view` from {session.name}.\n\n{text}"
 
 
-def _document(scene: Scene) -> dict[str, Any]:
-    content = scene.document.content
-    assert isinstance(content, dict)
-    return content
+def _changed(one: Chained, session: Session) -> dict[str, Any]:
+    """What a scene says of a chain, with how it is solved now."""
+    written = one.setup.given.document.content
+    kept = {key: value for key, value in written.items() if key not in _LEFT_OUT}
+    return kept | _solve_keys(one, session.frame) | {"follow": session.follow}
 
 
-def _solve_keys(one: Chained) -> dict[str, Any]:
+def _solve_keys(one: Chained, frame: int) -> dict[str, Any]:
     """The keys of a scene that say how a chain is solved, and its goal."""
     scene = one.setup.scene
     choice = one.setup.choice
@@ -50,15 +49,11 @@ def _solve_keys(one: Chained) -> dict[str, Any]:
         keys["pole"] = _plain(scene.pole.model_dump(exclude_unset=True, exclude_none=True))
         keys["pole"]["bind"] = scene.bind
     goal: dict[str, Any] = {"name": "view", "position": one.goal.tolist()}
-    turn = _given(one.turn)
-    if turn is not None and scene.pole is not None and scene.pole.rotor:
+    turn = one.turn(frame)
+    if turn is not None and one.setup.takes_turn and np.isfinite(turn).all():
         goal["rotation"] = np.degrees(turn).tolist()
     keys["goals"] = [goal]
     return keys
-
-
-def _given(turn: Array | None) -> Array | None:
-    return None if turn is None or np.isnan(turn).any() else turn
 
 
 def _plain(value: Any) -> Any:

@@ -7,10 +7,11 @@ import numpy as np
 from viser import ViserServer
 
 from limbik.core.errors import LimbikError
+from limbik.core.posegoals import PoseSolution
 from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.solution2d import PlanarSolution
 from limbik.plugins.viewer.axes import to_page
-from limbik.plugins.viewer.drawing import ChainDrawing, Limb, blocking
+from limbik.plugins.viewer.drawing import ChainDrawing, Limb, SkeletonDrawing, blocking
 from limbik.plugins.viewer.gizmos import Gizmo
 from limbik.plugins.viewer.looks import GOAL, OTHER, PLANE
 from limbik.plugins.viewer.session import Session, Shown
@@ -56,18 +57,28 @@ class Page:
         self.poles: dict[str, Gizmo] = {}
         for name, one in shown.items():
             self._add(name, one)
-        one = shown[session.chain.name]
-        size = joint_size(one)
-        self._other = Limb(server.scene, "/compared", len(one.positions), size, OTHER)
-        self._other_goal = server.scene.add_mesh_simple(
-            "/compared/goal", 1.3 * size * ball()[0], ball()[1], color=GOAL, opacity=0.5
-        )
-        self._show(shown, dragged=False)
+        self._skeleton = SkeletonDrawing(server.scene, session)
+        self.select(session.selected)
+
+    def select(self, name: str) -> None:
+        """Let panels and comparison be about a chain."""
+        with self.session.lock:
+            self.session.select(name)
+            shown = self.session.solve(stages=True)
+            one, scene = shown[name], self.server.scene
+            size = joint_size(one)
+            self._other = Limb(scene, "/compared", len(one.positions), size, OTHER)
+            self._other_goal = scene.add_mesh_simple(
+                "/compared/goal", 1.3 * size * ball()[0], ball()[1], color=GOAL, opacity=0.5
+            )
+            self._show(shown, dragged=False)
 
     def _add(self, name: str, shown: Shown) -> None:
         size = ARROWS * shown.solution.chain.length
-        self.drawings[name] = ChainDrawing(self.server.scene, f"/{name}", shown, joint_size(shown))
         several = len(self.session.chains) > 1
+        self.drawings[name] = ChainDrawing(
+            self.server.scene, f"/{name}", shown, joint_size(shown), plain=several
+        )
 
         def moved(place: Array, turn: Array, over: bool) -> bool:
             def change() -> None:
@@ -78,10 +89,12 @@ class Page:
             return self.act(change, dragged=not over)
 
         def pole_moved(place: Array, turn: Array, over: bool) -> bool:
-            setup = self.session.chains[name].setup
-            return self.act(
-                lambda: self.session.change(name, setup.with_pole(place)), dragged=not over
-            )
+            one = self.session.chains[name]
+
+            def change() -> None:
+                self.session.change(name, one.setup.with_pole(one.from_world(place)))
+
+            return self.act(change, dragged=not over)
 
         self.goals[name] = Gizmo(
             self.server, f"/{name}-goal", name if several else "goal", size, GOAL,
@@ -131,12 +144,15 @@ class Page:
                 self.drawings[name].update(one)
                 chained = self.session.chains[name]
                 gizmo = self.goals[name]
-                turn = _goal_turn(chained.turn, one) if gizmo.rotates else np.eye(3)
-                gizmo.put(chained.goal, turn, dragged)
+                turn = np.eye(3)
+                if gizmo.rotates:
+                    turn = _goal_turn(chained.turn(self.session.frame), one)
+                gizmo.put(chained.to_world(chained.goal), turn, dragged)
                 pole = self.poles[name]
                 pole.visible = chained.setup.in_plane
-                pole.put(np.array(chained.setup.pole.position), None, dragged)
-            compared = self.session.compared()
+                pole.put(chained.pole(chained.setup), None, dragged)
+            compared = self.session.compared(shown)
+            self._skeleton.update(self.session)
             self._show_compared(compared)
             rows = self._rows(shown, compared)
             self._status.content = status_html(rows, self._error)
@@ -159,10 +175,15 @@ class Page:
     ) -> list[tuple[str, Shown]]:
         rows = list(shown.items())
         if len(rows) == 1:
-            rows = [(rows[0][1].setup.choice["use"], rows[0][1])]
+            rows = [(name_of(one), one) for _, one in rows]
         if compared is not None:
-            rows.append((compared.setup.choice["use"], compared))
+            rows.append((name_of(compared), compared))
         return rows
+
+
+def name_of(shown: Shown) -> str:
+    """Return the name of the solver at work."""
+    return str(shown.setup.choice["use"])
 
 
 def joint_size(shown: Shown) -> float:
@@ -177,6 +198,8 @@ def _goal_turn(turn: Array | None, shown: Shown) -> Array:
     if turn is not None and np.isfinite(turn).all():
         return hpb_to_matrix(turn)
     solution = shown.solution
-    axes = solution.goal_rotation if isinstance(solution, PlanarSolution) else None
+    axes = None
+    if isinstance(solution, PlanarSolution | PoseSolution):
+        axes = solution.goal_rotation
     known = axes is not None and np.isfinite(axes).all()
     return np.asarray(axes if known else shown.rotations[-1])

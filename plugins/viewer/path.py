@@ -1,54 +1,63 @@
 """A scene's goals, or its planned trajectory, as a path in time that can be gone along."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import LimbikError
-from limbik.core.rotation import Array
-from limbik.core.scene import Scene
-from limbik.core.solution import Continuity
-from limbik.plugins.viewer.setup import Setup
+from limbik.core.rotation import Array, matrix_to_hpb
+from limbik.core.scene import Scene, require_goals
 
 RATE = 30.0  # goals a second of a path that says nothing
 APART = 1.0  # seconds for each goal of a scene whose goals are no path
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Path:
-    """Goals in time.
+    """Goals of one chain or several in time.
 
     Attributes:
         times: (m,) [s].
-        goals: World positions, (m, 3) [length].
         names: m names.
-        turns: How the goals are turned, HPB, (m, 3) [rad]; NaN for goals without, None for none.
+        goals: Positions for each chain, by its name, (m, 3) [length].
+        turns: How they are turned, HPB, (m, 3) [rad]; NaN for goals without, None for none.
         note: Why a planned trajectory is not shown; empty if all is well.
     """
 
     times: Array
-    goals: Array
     names: tuple[str, ...]
-    turns: Array | None = None
+    goals: Mapping[str, Array]
+    turns: Mapping[str, Array | None]
     note: str = ""
-    _pasts: list[Continuity | None] = field(default_factory=lambda: [None])
 
     @classmethod
-    def of(cls, scene: Scene) -> "Path":
-        """Return the path of a scene: its trajectory if there is one and scipy, else its goals."""
+    def of(cls, scene: Scene | BodyScene) -> "Path":
+        """Return the path of a scene: its trajectory if there is one and scipy, else its goals.
+
+        Raises:
+            SceneError: It has a trajectory that cannot be planned, and no goals.
+        """
+        if isinstance(scene, BodyScene):
+            turns = {part.name: part.scene.goal_turns for part in scene.parts}
+            step = scene.frame_time or APART
+            times = _steady(len(scene.frame_names), step)
+            return cls(times, scene.frame_names, scene.goals, turns)
         note = ""
         if scene.trajectory is not None:
             try:
                 return cls._planned(scene)
             except LimbikError as error:
                 note = str(error)
+        require_goals(scene)
         step = 1.0 / RATE if scene.follow else APART
         if scene.judge is not None:
             step = 1.0 / scene.judge.rate
         elif scene.body is not None and scene.body.frame_time:
             step = scene.body.frame_time
-        times = np.asarray(np.arange(len(scene.goals)) * step, np.float64)
-        return cls(times, scene.goals, scene.goal_names, scene.goal_turns, note)
+        goals, turns = {scene.name: scene.goals}, {scene.name: scene.goal_turns}
+        return cls(_steady(len(scene.goals), step), scene.goal_names, goals, turns, note)
 
     @classmethod
     def _planned(cls, scene: Scene) -> "Path":
@@ -56,11 +65,12 @@ class Path:
 
         assert scene.trajectory is not None
         samples = scene_trajectory(scene).sample(scene.trajectory.dt)
-        names = tuple(f"{time:.2f} s" for time in samples.times)
-        return cls(samples.times, samples.positions, names)
+        names = tuple("on the trajectory" for _ in samples.times)
+        turns = matrix_to_hpb(samples.rotations) if scene.solver is not None else None
+        return cls(samples.times, names, {scene.name: samples.positions}, {scene.name: turns})
 
     def __len__(self) -> int:
-        return len(self.goals)
+        return len(self.times)
 
     @property
     def duration(self) -> float:
@@ -71,18 +81,6 @@ class Path:
         """Return the last goal at or before a time [s]."""
         return max(int(np.searchsorted(self.times, time + 1e-9, side="right")) - 1, 0)
 
-    def goal(self, frame: int) -> tuple[Array, Array | None]:
-        """Return position and turn of a goal."""
-        turn = None if self.turns is None else self.turns[frame]
-        return self.goals[frame], turn
 
-    def past(self, frame: int, setup: Setup) -> Continuity | None:
-        """Return what the solves of all goals before a frame leave behind; they are kept."""
-        while len(self._pasts) <= frame:
-            goal, turn = self.goal(len(self._pasts) - 1)
-            self._pasts.append(setup.solve(goal, turn, self._pasts[-1]).continuity)
-        return self._pasts[frame]
-
-    def forget(self) -> None:
-        """Drop what was kept: the setup has changed."""
-        del self._pasts[1:]
+def _steady(count: int, step: float) -> Array:
+    return np.asarray(np.arange(count) * step, np.float64)

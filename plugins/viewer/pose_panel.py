@@ -1,5 +1,6 @@
 """Goal and pole in numbers, the stages of the solve, and the path in time."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -20,13 +21,19 @@ class PosePanel:
 
     Args:
         page: What it is about.
+        selected: Called when another chain was selected.
     """
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, selected: Callable[[], None]) -> None:
+        self.selected = selected
         self._page, self._session = page, page.session
         gui, one = page.server.gui, self._session.chain
+        if len(self._session.chains) > 1:
+            text = "what the panels are about"
+            chain = Control(("chain",), "choice", choices=tuple(self._session.chains), text=text)
+            add_control(gui, chain, one.name, self._select)
         place = Control(("goal",), "vector", size=3, text="where the end shall go, world")
-        self._goal = add_control(gui, place, tuple(one.goal), self._set_goal)
+        self._goal = add_control(gui, place, tuple(one.to_world(one.goal)), self._set_goal)
         stage = gui.add_slider("stage", 0, 1, 1, 1, hint="poses of the solve, one by one")
         self._stage = Slider(stage, self._set_stage)
         self._stage_name = gui.add_markdown("")
@@ -37,10 +44,17 @@ class PosePanel:
             self._pole = add_control(gui, where, one.setup.pole.position, self._set_pole)
             names = (NO_ROTOR, *ROTORS, OWN_ROTOR)
             rotor = Control(("rotor",), "choice", choices=names, text="what turns the pole along")
-            add_control(gui, rotor, self._rotor_name(), self._choose_rotor)
+            self._rotor = add_control(gui, rotor, self._rotor_name(), self._choose_rotor)
             self._rotor_folder: Any = None
         self._build_rotor()
         self._add_path()
+
+    def _select(self, control: Control, name: Any) -> bool:
+        self._page.select(name)
+        self._rotor.value = self._rotor_name()
+        self._build_rotor()
+        self.selected()
+        return True
 
     def _add_path(self) -> None:
         page, session = self._page, self._session
@@ -64,7 +78,7 @@ class PosePanel:
         """Show a solve."""
         one = self._session.chain
         seen = shown[one.name]
-        self._goal.value = tuple(np.round(one.goal, 9).tolist())
+        self._goal.value = tuple(np.round(one.to_world(one.goal), 9).tolist())
         self._pole_folder.visible = one.setup.in_plane
         self._pole.value = one.setup.pole.position
         if not dragged or seen.stages:

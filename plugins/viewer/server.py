@@ -63,11 +63,12 @@ class Viewer:
         tabs = gui.add_tab_group()
         names = ("Pose", "Solver", "Options", "FK", "Show")
         pose, solver, options, fk, show = (tabs.add_tab(name) for name in names)
+        solving = SolverPanel(self.page, solver, options, fk)
         with pose:
-            self._pose = PosePanel(self.page)
+            self._pose = PosePanel(self.page, solving.rebuild)
         with show:
             shown = ShowPanel(self.page)
-        for panel in (self._pose, SolverPanel(self.page, solver, options, fk), shown):
+        for panel in (self._pose, solving, shown):
             self.page.add_panel(panel)
         self.url = f"http://{host}:{self._server.get_port()}"
 

@@ -15,8 +15,9 @@ from limbik.core.errors import Fault, InputError, LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
+from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene
 from limbik.core.settings import ONLY_3D, Model, Settings
 from limbik.core.slots import SLOTS, SOLVER
@@ -24,9 +25,9 @@ from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.solving import scene_solver, solve_scene
+from limbik.core.solving import single_solver
 from limbik.core.strategy import layout
-from limbik.core.whole import OWN_SOLVERS, prepare
+from limbik.core.whole import OWN_SOLVERS
 from limbik.core.wording import found_words, refusal
 from limbik.plugins.viewer.controls import Control, controls
 
@@ -119,14 +120,21 @@ class Setup:
         )
 
     @cached_property
-    def solver(self) -> Solver | None:
-        """Limbik's own solver, 3D or 2D; None where a plug-in solves."""
-        return None if self.scene.solver else scene_solver(self.scene, self.registry)
+    def solver(self) -> Solver | WholeSolver:
+        """The solver of the scene as it is now."""
+        return single_solver(self.scene, self.registry)
+
+    @property
+    def takes_turn(self) -> bool:
+        """Whether the orientation of a goal has an effect: on a pole rotor, or on the end."""
+        if isinstance(self.solver, WholeSolver):
+            return self.solver.turns_end
+        return self.in_plane and self.pole.rotor is not None
 
     @cached_property
     def parts(self) -> dict[str, Solver]:
         """Solvers that give the IK and the FK component alone (C-14)."""
-        if self.solver is None:
+        if isinstance(self.solver, WholeSolver):
             return {}
         return {"IK": self.solver.altered(fk_mix=0.0), "FK": self.solver.altered(ik=False)}
 
@@ -136,27 +144,49 @@ class Setup:
         turn: Array | None = None,
         before: Continuity | None = None,
         trace: bool = False,
-        part: str = "",
     ) -> Solution:
         """Solve one goal.
 
         Args:
             goal: World position, (3,) [length].
-            turn: How the goal is turned, HPB [rad]; moves a pole rotor only.
+            turn: How the goal is turned, HPB [rad], or NaNs.
             before: Continuity of the solve before.
             trace: Whether to keep every stage's pose.
-            part: `IK` or `FK` for that component alone.
 
         Raises:
             LimbikError: The goal is not finite, or a strategy failed.
         """
-        goal = checked(goal, (3,), "goal")
-        solver = self.parts[part] if part else self.solver
-        if solver is None:
-            return solve_scene(replace(self.scene, goals=goal[None]), self.registry)[0]
+        return self._ask(self.solver, checked(goal, (3,), "goal"), turn, before, trace)
+
+    def again(self, found: Solution, turn: Array | None, pole: Array, part: str = "") -> Solution:
+        """Solve what another solve was asked, from where its base was.
+
+        Args:
+            found: The other solve.
+            turn: How the goal is turned.
+            pole: Where the pole is, world, (3,) [length].
+            part: `IK` or `FK` for that component alone.
+        """
+        chain = found.chain
+        base = np.array(chain.base_position, np.float64)
+        solver = (self.parts[part] if part else self.solver).moved(base, chain.base_rotation)
+        if isinstance(solver, Solver2D):
+            solver = solver.with_pole(pole)
+        return self._ask(solver, found.goal, turn, None, bool(found.trace))
+
+    def _ask(
+        self,
+        solver: Solver | WholeSolver,
+        goal: Array,
+        turn: Array | None,
+        before: Continuity | None,
+        trace: bool,
+    ) -> Solution:
         asked: dict[str, Any] = {"fk_offsets": self.fk, "continuity": before, "trace": trace}
-        if isinstance(solver, Solver2D) and turn is not None:
+        if turn is not None and isinstance(solver, Solver2D):
             asked["goal_turn"] = turn
+        if turn is not None and isinstance(solver, WholeSolver):
+            asked["goal_rotation"] = hpb_to_matrix(turn)
         return solver.solve(goal, **asked)
 
     def with_option(self, path: tuple[str, ...], value: Any) -> "Setup":
@@ -225,9 +255,7 @@ class Setup:
     def _changed(self, **changes: Any) -> "Setup":
         """Return a changed copy that is known to work."""
         changed = replace(self, **changes)
-        if changed.solver is None:
-            assert changed.scene.solver is not None
-            prepare(changed.scene.solver, changed.chain, changed.scene.settings)
+        changed.solver  # noqa: B018 - made now, so that it is refused now
         return changed
 
 

@@ -29,15 +29,7 @@ class SolverPanel:
         self._page, self._session, self._gui = page, page.session, page.server.gui
         self._tabs = {"solver": solver, "options": options, "fk": fk}
         self._folders: dict[str, Any] = {}
-        self._joint = self._setup.chain.names[0]
-        with solver, self._gui.add_folder("side by side", order=LAST):
-            fit, why = self._setup.solvers
-            text = "; ".join(f"not {name}: {reason}" for name, reason in why.items())
-            rival = Control(("with",), "choice", choices=(NOBODY, *fit), text=text)
-            add_control(self._gui, rival, NOBODY, self._compare)
-            apart = Control(("apart",), "float", 0.0, 2.0, text="in lengths of the chain")
-            add_control(self._gui, apart, page.apart, self._set_apart)
-        self._build_all()
+        self.rebuild()
 
     @property
     def _setup(self) -> Setup:
@@ -60,6 +52,18 @@ class SolverPanel:
         with self._tabs[tab]:
             self._folders[name] = self._gui.add_folder(name, order=order)
         return self._folders[name]
+
+    def rebuild(self) -> None:
+        """Make all widgets anew, for the chain that is selected."""
+        self._joint = self._setup.chain.names[0]
+        with self._folder("solver", "side by side", LAST):
+            fit, why = self._setup.solvers
+            text = "; ".join(f"not {name}: {reason}" for name, reason in why.items())
+            rival = Control(("with",), "choice", choices=(NOBODY, *fit), text=text)
+            add_control(self._gui, rival, NOBODY, self._compare)
+            apart = Control(("apart",), "float", 0.0, 2.0, text="in lengths of the chain")
+            add_control(self._gui, apart, self._page.apart, self._set_apart)
+        self._build_all()
 
     def _build_all(self) -> None:
         slots = (SOLVER.name, *self._setup.slots)

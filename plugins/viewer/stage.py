@@ -54,13 +54,18 @@ def set_stage(server: ViserServer, session: Session, shown: dict[str, Shown]) ->
 
 def seen_points(session: Session, shown: dict[str, Shown]) -> Array:
     """Return what the camera shall see, (m, 3) [length]."""
-    parts = [session.path.goals] if session.follow else []
+    parts: list[Array] = []
+    if session.follow and session.body is None:
+        parts += session.path.goals.values()
     for name, one in shown.items():
         chained = session.chains[name]
         chain = one.solution.chain
-        parts += [one.positions, forward_kinematics(chain, chain.rest)[0], chained.goal[None]]
+        parts += [one.positions, forward_kinematics(chain, chain.rest)[0]]
+        parts.append(chained.to_world(chained.goal)[None])
         if chained.setup.in_plane:
-            parts.append(np.array([chained.setup.pole.position]))
+            parts.append(chained.pole(chained.setup)[None])
+    if session.whole is not None:
+        parts.append(session.whole.positions)
     return np.concatenate(parts)
 
 

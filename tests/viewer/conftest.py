@@ -2,8 +2,8 @@
 
 import pytest
 
+from limbik.core.bodyscene import read_any
 from limbik.core.registry import Registry
-from limbik.core.scene import read_scene
 from limbik.plugins.viewer.session import Session
 from limbik.tests.viewer.scenes import CONFIGS, Opened
 
@@ -16,4 +16,4 @@ def registry() -> Registry:
 @pytest.fixture
 def opened(registry: Registry) -> Opened:
     """Open one of the shipped scenes by its name."""
-    return lambda name: Session(read_scene(CONFIGS / f"{name}.yaml", registry), registry)
+    return lambda name: Session(read_any(CONFIGS / f"{name}.yaml", registry), registry)

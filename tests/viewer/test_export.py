@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from limbik.core.body import solve_body
+from limbik.core.bodyscene import body_from
+from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
 from limbik.core.scene import scene_from
 from limbik.core.solving import solve_scene
@@ -61,3 +64,24 @@ def test_another_solver_with_a_turned_pole(opened: Opened, registry: Registry) -
     assert "pole" not in read_yaml(scene_text(session), "saved").content
     (shown,) = session.solve().values()
     np.testing.assert_array_equal(again(session, registry), shown.angles)
+
+
+def test_a_body(opened: Opened, registry: Registry) -> None:
+    session = opened("body")
+    session.select("right arm")
+    session.change("right arm", session.chain.setup.with_option(("twist",), 20.0))
+    session.move_goal("spine", np.array([0.1, 0.78, 0.1]))
+    shown = session.solve()
+    document = read_yaml(scene_text(session), "saved.yaml")
+    (whole,) = solve_body(body_from(document, CONFIGS, registry), registry)
+    for name, one in shown.items():
+        np.testing.assert_allclose(whole.solutions[name].angles, one.angles, atol=1e-12)
+
+
+def test_pose_goals(opened: Opened, registry: Registry) -> None:
+    session = opened("arm7-pose")
+    session.turn_goal("arm7-pose", np.radians([10.0, 170.0, 5.0]))
+    (shown,) = session.solve().values()
+    np.testing.assert_allclose(again(session, registry), shown.angles, atol=1e-9)
+    assert isinstance(shown.solution, PoseSolution)
+    assert shown.solution.rotation_error < 1e-3

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from limbik.core.body import solve_body
 from limbik.core.errors import InputError, LimbikError
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
@@ -100,10 +101,8 @@ def test_a_changed_option_is_used_for_the_past_of_a_path_too(opened: Opened) -> 
     setup = session.chain.setup.with_option(("start",), "current")
     session.change(session.chain.name, setup)
     session.go_to(20)
-    past = session.path.past(20, setup)
-    assert past is not None
     whole = solve_scene(replace(setup.scene, follow=True))
-    np.testing.assert_array_equal(past.angles, whole[19].angles)
+    np.testing.assert_array_equal(only(session).angles, whole[20].angles)
 
 
 def test_a_path_plays_in_its_own_time_and_begins_again(opened: Opened) -> None:
@@ -120,19 +119,20 @@ def test_a_planned_trajectory_is_the_path(opened: Opened) -> None:
     assert len(session.path) > 1000
     assert session.path.note == ""
     session.go_to(700)
-    np.testing.assert_array_equal(session.chain.goal, session.path.goals[700])
+    np.testing.assert_array_equal(session.chain.goal, session.path.goals["weld"][700])
     assert only(session).solution.reached
 
 
 def test_two_solvers_share_the_goal(opened: Opened) -> None:
     session = opened("planar")
     session.compare("article-ccd")
-    other = session.compared()
+    shown = session.solve()
+    other = session.compared(shown)
     assert other is not None
-    np.testing.assert_array_equal(other.solution.goal, only(session).solution.goal)
+    np.testing.assert_array_equal(other.solution.goal, shown["planar"].solution.goal)
     assert other.setup.choice["use"] == "article-ccd"
     session.compare(None)
-    assert session.compared() is None
+    assert session.compared(shown) is None
 
 
 def test_ik_and_fk_component_are_the_two_ends_of_the_mix(opened: Opened) -> None:
@@ -166,3 +166,51 @@ def test_without_follow_a_solve_has_no_past(opened: Opened, registry: Registry) 
         session.move_goal("arm", goal)
         session.solve()
     np.testing.assert_array_equal(only(session).angles, only(opened("arm")).angles)
+
+
+def test_a_body_moves_as_the_command_line_solves_it(opened: Opened) -> None:
+    session = opened("body")
+    assert session.body is not None
+    whole = solve_body(session.body)
+    for frame in (0, 4):
+        session.go_to(frame)
+        for name, shown in session.solve().items():
+            np.testing.assert_array_equal(shown.angles, whole[frame].solutions[name].angles)
+
+
+def test_dragging_the_spine_carries_the_arms_and_leaves_the_legs(opened: Opened) -> None:
+    session = opened("body")
+    before = session.solve()
+    session.move_goal("spine", before["spine"].solution.goal + np.array([0.1, -0.05, 0.05]))
+    after = session.solve()
+    for side in ("left", "right"):
+        arm, leg = f"{side} arm", f"{side} leg"
+        assert np.abs(after[arm].positions[0] - before[arm].positions[0]).max() > 0.01
+        np.testing.assert_allclose(after[arm].positions[-1], before[arm].positions[-1], atol=1e-3)
+        np.testing.assert_array_equal(after[leg].positions, before[leg].positions)
+
+
+def test_a_goal_in_the_axes_of_a_joint_is_dragged_in_the_world(opened: Opened) -> None:
+    session = opened("walk")
+    session.go_to(12)
+    before = session.solve()
+    ankle = before["left leg"].positions[-1]
+    goal = ankle + np.array([0.0, 4.0, 3.0])
+    session.move_goal("left leg", goal)
+    after = session.solve()["left leg"]
+    np.testing.assert_allclose(after.positions[-1], goal, atol=0.01)
+    session.parts = {"IK"}
+    np.testing.assert_allclose(session.solve()["left leg"].parts["IK"], after.positions, atol=1e-9)
+
+
+def test_one_chain_of_a_body_is_solved_another_way_and_compared(opened: Opened) -> None:
+    session = opened("body")
+    session.select("left arm")
+    session.compare("fabrik")
+    shown = session.solve()
+    other = session.compared(shown)
+    assert other is not None
+    np.testing.assert_allclose(other.positions[0], shown["left arm"].positions[0])
+    session.change("left arm", session.chain.setup.with_option(("tolerance",), 0.01))
+    assert session.chains["right arm"].setup.settings.tolerance == 0.0001
+    assert session.solve()["left arm"].solution.reached
