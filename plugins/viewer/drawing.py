@@ -154,19 +154,26 @@ class ChainDrawing:
         handle.colors = line_colours(np.tile(colour, (len(handle.points), 1)))
 
     def _draw_lines(self, shown: Shown) -> None:
-        solution = shown.solution
-        base, end = shown.positions[0], shown.positions[-1]
-        found = {"handle": segments(np.stack([base, end]))}
-        for part, positions in shown.parts.items():
-            found[f"{part} component"] = segments(positions)
-        if isinstance(solution, PlanarSolution):
-            found["pole"] = segments(np.stack([base, solution.pole]))
-        bend = bend_direction(solution)
-        if bend is not None:
-            found["bend direction"] = self._arrow(*bend)
         for line, handle in self.lines.items():
-            points = to_page(found[line]) if line in found else NOWHERE
-            _set(handle, points, np.tile(self.colours[line], (len(points), 1)))
+            if handle.visible:
+                found = self._line(line, shown)
+                points = NOWHERE if found is None else to_page(found)
+                _set(handle, points, np.tile(self.colours[line], (len(points), 1)))
+
+    def _line(self, line: str, shown: Shown) -> Array | None:
+        """Return the segments of a line; None where there is nothing to show."""
+        solution, base = shown.solution, shown.positions[0]
+        if line == "handle":
+            return segments(np.stack([base, shown.positions[-1]]))
+        if line == "pole":
+            if not isinstance(solution, PlanarSolution):
+                return None
+            return segments(np.stack([base, solution.pole]))
+        if line == "bend direction":
+            bend = bend_direction(solution)
+            return None if bend is None else self._arrow(*bend)
+        part = shown.parts.get(line.removesuffix(" component"))
+        return None if part is None else segments(part)
 
     def _arrow(self, place: Array, way: Array) -> Array:
         """Return the segments of an arrow: a shaft and four barbs."""
@@ -184,8 +191,7 @@ class ChainDrawing:
             return
         found = arcs(shown, 3.2 * self._size)
         if not found:
-            _set(self._ranges, NOWHERE)
-            _set(self._hands, NOWHERE)
+            self._ranges.visible = self._hands.visible = False
             return
         lines = np.concatenate([arc.lines for arc in found])
         shades = [BLOCKING if arc.at_limit else ARCS[arc.axis] for arc in found]
@@ -194,8 +200,8 @@ class ChainDrawing:
 
     def _draw_rotor(self, solution: Solution) -> None:
         rotor = solution.rotor if isinstance(solution, PlanarSolution) else None
+        self._rotor.visible = rotor is not None
         if rotor is None:
-            _set(self._rotor, NOWHERE)
             return
         base = solution.positions[0]
         axes = np.stack([np.stack([base, base + 5.0 * self._size * axis]) for axis in rotor.T])

@@ -41,7 +41,7 @@ class PosePanel:
         with self._pole_folder:
             text = "where the chain bends to, world"
             where = Control(("position",), "vector", size=3, text=text)
-            self._pole = add_control(gui, where, one.setup.pole.position, self._set_pole)
+            self._pole = add_control(gui, where, one.pole(one.setup), self._set_pole)
             names = (NO_ROTOR, *ROTORS, OWN_ROTOR)
             rotor = Control(("rotor",), "choice", choices=names, text="what turns the pole along")
             self._rotor = add_control(gui, rotor, self._rotor_name(), self._choose_rotor)
@@ -80,7 +80,7 @@ class PosePanel:
         seen = shown[one.name]
         self._goal.value = tuple(np.round(one.to_world(one.goal), 9).tolist())
         self._pole_folder.visible = one.setup.in_plane
-        self._pole.value = one.setup.pole.position
+        self._pole.value = tuple(np.round(one.pole(one.setup), 9).tolist())
         if not dragged or seen.stages:
             self._show_stage(seen)
         if self._time is not None:
@@ -104,7 +104,9 @@ class PosePanel:
     def _set_pole(self, control: Control, value: Any) -> bool:
         one = self._session.chain
         return self._page.act(
-            lambda: self._session.change(one.name, one.setup.with_pole(np.array(value)))
+            lambda: self._session.change(
+                one.name, one.setup.with_pole(one.from_world(np.array(value)))
+            )
         )
 
     def _rotor_name(self) -> str:
