@@ -28,6 +28,7 @@ from limbik.plugins.viewer.session import Session, Shown
 from limbik.plugins.viewer.shapes import along, ball, bone, cone, segments
 
 NOWHERE = np.zeros((1, 2, 3))
+STANDS_OUT = 1.15  # size of a joint that blocks; others may be in the same place
 MOST_ARCS = 8  # joints of a chain whose ranges are shown unasked
 _AXES = {"x": 0, "y": 1, "z": 2}
 
@@ -81,7 +82,10 @@ class Limb:
         self._bones.batched_positions = places[:-1].astype(np.float32)
         self._bones.batched_wxyzs = along(ways).astype(np.float32)
         self._bones.batched_scales = np.stack([thick, thick, lengths], 1).astype(np.float32)
+        sizes = np.full((len(places), 3), self._size, np.float32)
+        sizes[list(blocking)] *= STANDS_OUT
         self._joints.batched_positions = places.astype(np.float32)
+        self._joints.batched_scales = sizes
         self._joints.batched_colors = _joint_colours(len(places), blocking)
 
     @property

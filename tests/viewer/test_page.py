@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from limbik.core.solution2d import PlanarSolution
 from limbik.plugins.viewer.axes import to_page
 from limbik.plugins.viewer.session import LAST
 from limbik.tests.viewer.scenes import Opened
@@ -169,3 +170,56 @@ def test_a_taken_port_is_passed_over(visit: Visiting, opened: Opened) -> None:
         assert int(second.url.rsplit(":", 1)[1]) != taken
     finally:
         second.close()
+
+
+def segments_of(client: Client, name: str, line: str) -> np.ndarray:
+    """Ends of a line's segments, (k, 2, 3), in limbik's axes."""
+    return to_page(client.viewer.page.drawings[name].lines[line].points)
+
+
+def test_lines_end_where_they_should(visit: Visiting) -> None:
+    client = visit("leg-pole")
+    page = client.viewer.page
+    session = page.session
+    page.act(lambda: session.go_to(2))
+    for line in ("handle", "IK component", "FK component", "pole", "bend direction"):
+        client.set(line, True)
+    drawing = page.drawings["leg-pole"]
+    until(lambda: all(handle.visible for handle in drawing.lines.values()))
+    until(lambda: session.parts == {"IK", "FK"})
+    with session.lock:
+        one = session.solve()["leg-pole"]
+    solution = one.solution
+    assert isinstance(solution, PlanarSolution)
+    base, end = one.positions[0], one.positions[-1]
+    expected = {
+        "handle": np.array([[base, end]]),
+        "pole": np.array([[base, solution.pole]]),
+        "IK component": np.stack([one.parts["IK"][:-1], one.parts["IK"][1:]], 1),
+        "FK component": np.stack([one.parts["FK"][:-1], one.parts["FK"][1:]], 1),
+    }
+    for line, ends in expected.items():
+        until(lambda line=line: np.abs(segments_of(client, "leg-pole", line)).any())  # type: ignore[misc]
+        np.testing.assert_allclose(segments_of(client, "leg-pole", line), ends, atol=1e-4)
+    start, tip = segments_of(client, "leg-pole", "bend direction")[0]
+    way = (tip - start) / np.linalg.norm(tip - start)
+    np.testing.assert_allclose(way, solution.plane[:, 1], atol=1e-5)
+
+
+def test_a_line_takes_the_colour_it_is_given(visit: Visiting) -> None:
+    client = visit("arm")
+    line = client.viewer.page.drawings["arm"].lines["handle"]
+    client.set("in", (255, 0, 0))
+    until(lambda: line.colors.reshape(-1, 3).tolist() == [[255, 0, 0]] * 2)
+
+
+def test_the_panels_follow_the_chain_that_is_selected(visit: Visiting) -> None:
+    client = visit("body")
+    page = client.viewer.page
+    client.set("chain", "left arm")
+    until(lambda: page.session.selected == "left arm")
+    goal = page.session.chain.goal
+    until(lambda: bool(np.allclose(client.widget("goal").value, goal, atol=1e-6)))
+    until(lambda: "left_elbow" in client.widget("joint").options)
+    client.set("with", "fabrik")
+    until(lambda: page._other.visible)
