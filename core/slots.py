@@ -139,7 +139,7 @@ def _finish_samples() -> list[Sample]:
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
         place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 32))
         chain = (offsets, frozen, place, base, low, high)
-        return (np.array(goal), 1e-3, 1.8, *chain, 1, None, angles, rows, np.zeros(1))
+        return (np.array(goal), 1e-3, 1.8, *chain, 1, None, angles, rows, np.zeros(2))
 
     return [
         sample([0.3, 0.5, 1.5], low, bound, angles),
@@ -225,7 +225,13 @@ FINISH = Slot(
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
         Argument("scratch", "matrix", "(n, 32) IN/OUT to work in, of any content", True),
-        Argument("verdict", "vector", "(1,) OUT: 1 if everything it knows was tried, else 0", True),
+        Argument(
+            "verdict",
+            "vector",
+            "(2,) OUT: 1 if all it knows was tried in vain, else 0; "
+            "least distance it found, infinite unless it says [length]",
+            True,
+        ),
     ),
     _finish_samples,
 )

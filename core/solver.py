@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -70,6 +71,33 @@ class Solver:
     def altered(self, **options: Any) -> "Solver":
         """Return a solver of the same kind with some settings changed."""
         return Solver(self.chain, self._altered(options), self.registry)
+
+    def mirrored(self) -> "Solver":
+        """Return the solver of the chain mirrored in the world's YZ plane (M-14).
+
+        It answers mirrored goals with the mirrored poses.
+        """
+        from limbik.core.mirror import mirrored_settings
+
+        settings = mirrored_settings(self.settings, self.strategies)
+        return Solver(self.chain.mirrored(), settings, self.registry)
+
+    def moved(self, position: Array, rotation: Array) -> "Solver":
+        """Return this solver for its chain with the base elsewhere, in a few microseconds.
+
+        Args:
+            position: Where the parent of joint 0 stands in the world, (3,) [length].
+            rotation: Its axes in the world, (3, 3).
+        """
+        self._plugs, self._kernel  # noqa: B018 - made once, for all copies
+        found = copy(self)
+        found.chain = self.chain.moved(position, rotation)
+        body = self._fixed[0]._replace(
+            base_position=np.array(position, np.float64),
+            base_rotation=found.chain.base_rotation,
+        )
+        found._fixed = (body, *self._fixed[1:])
+        return found
 
     def _altered(self, options: dict[str, Any]) -> Settings:
         return Settings(**{**self.settings.model_dump(exclude_unset=True), **options})
@@ -255,11 +283,12 @@ class Solver:
     @property
     def _columns(self) -> int:
         """How many numbers the kernel gives for each goal."""
-        return 7
+        return 8
 
     def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
         """Make the solution of one goal or many; numbers and rows have more to read."""
-        return Solution(**fields)
+        nearest = numbers[..., 7]
+        return Solution(**fields, nearest=float(nearest) if numbers.ndim == 1 else nearest)
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))

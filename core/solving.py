@@ -1,16 +1,15 @@
 """Solve the goals of a scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
+from limbik.core.posegoals import WholeSolver, solve_turned
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
-from limbik.core.solution import Continuity, Solution, Status
+from limbik.core.scene import Scene, require_goals
+from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import WholeSolution, prepare
+from limbik.core.whole import prepare
 
 
 def solve_scene(
@@ -28,10 +27,10 @@ def solve_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
-    if scene.solver is not None:
-        return list(_singles(solve_goals(scene, registry)))
-    if not trace:
+    require_goals(scene)
+    if scene.solver is not None or not trace:
         found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]
     solver = scene_solver(scene, registry)
@@ -63,7 +62,7 @@ def solve_goals(
     """
     if scene.solver is not None:
         batch = prepare(scene.solver, scene.chain, scene.settings)
-        return batch(scene.goals, scene.follow)
+        return solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)
     return solve_part(scene_solver(scene, registry), scene, slice(None), threads=threads)
 
 
@@ -110,25 +109,13 @@ def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
     return solver.bind() if scene.bind else solver
 
 
+def single_solver(scene: Scene, registry: Registry | None = None) -> Solver | WholeSolver:
+    """Return whatever solver a scene asks for, to be called goal by goal; see `scene_solver`."""
+    if scene.solver is not None:
+        return WholeSolver(scene.solver, scene.chain, scene.settings)
+    return scene_solver(scene, registry)
+
+
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:
     """Whether every goal is reached; with IK switched off none is pursued."""
     return not scene.settings.ik or all(solution.reached for solution in solutions)
-
-
-def _singles(many: Solution) -> Iterator[Solution]:
-    """Take a solution with a leading goal axis apart."""
-    for k in range(len(many.goal)):
-        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
-        yield WholeSolution(
-            many.chain,
-            many.goal[k],
-            many.angles[k],
-            many.positions[k],
-            many.rotations[k],
-            int(np.asarray(many.iterations)[k]),
-            float(np.asarray(many.distance)[k]),
-            Status(int(np.asarray(many.status)[k])),
-            many.bend_vector[k],
-            float(np.asarray(many.bend_angle)[k]),
-            notes=notes,
-        )

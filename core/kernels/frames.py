@@ -44,7 +44,7 @@ def new_pose(n: int) -> Pose:
         np.zeros((n, 3)),
         np.zeros((8, 3)),
         np.zeros((n, 32)),
-        np.zeros(1),
+        np.zeros(2),
     )
 
 

@@ -122,7 +122,7 @@ class Pose(NamedTuple):
     finish_rows: Array
     """What a finish works in, (n, 32)."""
     verdict: Array
-    """What a finish says, (1,)."""
+    """What a finish says, and the least distance to the goal it found [length], (2,)."""
 
 
 class Bend(NamedTuple):

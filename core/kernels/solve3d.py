@@ -1,6 +1,6 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
-from math import atan2, isnan
+from math import atan2, inf, isnan
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
@@ -45,7 +45,7 @@ from limbik.core.slots import call_root_control
 FAILED = 10
 
 # Columns of a solve's numbers; the bend vector takes three.
-ITERATIONS, DISTANCE, STATUS, BEND, BEND_ANGLE = 0, 1, 2, 3, 6
+ITERATIONS, DISTANCE, STATUS, BEND, BEND_ANGLE, NEAREST = 0, 1, 2, 3, 6, 7
 
 RENEW_EVERY = 32  # rounds after which free joints' matrices are made from angles again
 
@@ -79,7 +79,7 @@ def solve_goals(
         angles: OUT: HPB, (m, n, 3) [rad].
         positions: OUT: (m, n, 3) [length], world.
         rotations: OUT: (m, n, 3, 3), world.
-        numbers: OUT: (m, 7): iterations, distance, status, bend vector, bend angle.
+        numbers: OUT: (m, 8): iterations, distance, status, bend vector, bend angle, nearest.
         trace: OUT: angles of the last goal's stages, (t, n, 3) [rad]; t = 0 for none.
 
     Returns:
@@ -123,7 +123,7 @@ def _solve(
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
     bend_world = (0.0, 0.0, 0.0)
-    pose.verdict[0] = 0.0
+    pose.verdict[0], pose.verdict[1] = 0.0, inf
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
@@ -155,6 +155,7 @@ def _solve(
             if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
                 if not end_solve(pursued, body, options, plugs, pose):
                     failed = FAILED + 4
+                pose.verdict[1] += norm(subtract(goal, pursued))
                 stages = _record(stages, pose, trace)
     _settle_pose(body, options, fk, memory, pose)
     _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
@@ -366,7 +367,7 @@ def _write_numbers(
     pose: Pose,
     numbers: Array,
 ) -> None:
-    """Write iterations, distance, status and bend direction of a solve into numbers (7,)."""
+    """Write what a solve says beside its pose into numbers (8,)."""
     distance = distance_to(goal, pose)
     numbers[ITERATIONS] = iterations
     numbers[DISTANCE] = distance
@@ -377,3 +378,4 @@ def _write_numbers(
     numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = bend_world
     local = rotate_back(matrix(pose.world, options.root), bend_world)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
+    numbers[NEAREST] = min(distance, pose.verdict[1])

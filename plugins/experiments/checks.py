@@ -5,9 +5,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from limbik.core.choices import choice_faults
 from limbik.core.errors import Fault, InputError
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene, choice_faults
+from limbik.core.scene import Scene
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.solving import scene_solver

@@ -30,7 +30,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from limbik.core.scenemodel import Name, version
+from limbik.core.scenemodel import Name, check_version
 from limbik.core.settings import Model
 from limbik.core.wording import found_words
 
@@ -167,7 +167,7 @@ class ExperimentModel(Model):
     """A whole experiment file."""
 
     experiment: Annotated[
-        Literal[1], BeforeValidator(version), Field(description="version of the format")
+        Literal[1], BeforeValidator(check_version), Field(description="version of the format")
     ]
     name: Annotated[Name | None, Field(description="absent = the file's name")] = None
     seed: Annotated[int, Field(ge=0, le=2**63 - 1, description="of all sampled goals")] = 0

@@ -16,6 +16,7 @@ from limbik.core.kernels.rotation import (
     hpb_to_matrix,
     matrix,
     multiply,
+    norm,
     rotate,
     scale,
     subtract,
@@ -24,16 +25,16 @@ from limbik.core.kernels.rotation import (
 from limbik.core.rotation import Array
 
 # First columns of the scratch rows, three numbers each.
-ANGLES, TRIAL, BEST, START = 0, 3, 6, 9
-POSITION, HEADING, PITCH, BANK = 12, 15, 18, 21
-MOVES = 24
-ACTIVE = 27
+ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
+POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
 WIDTH = 30
 
 
 class Linkage(NamedTuple):
     """A chain of n joints."""
 
+    length: float
+    """Sum of the bones [length]"""
     offsets: Array
     """(n, 3) [length]"""
     frozen: Array
@@ -46,6 +47,12 @@ class Linkage(NamedTuple):
     """(n, 3) [rad]"""
     high: Array
     """(n, 3) [rad]"""
+
+
+@kernel
+def turns(joint: int, axis: int, chain: Linkage) -> bool:
+    """Return whether an axis has a range to turn in."""
+    return bool(chain.high[joint, axis] - chain.low[joint, axis] > 1e-9)
 
 
 @kernel
@@ -92,19 +99,49 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
         frame = multiply(parent, hpb_to_matrix(hpb))
         write(origin, scratch, joint, POSITION)
         # The elementary rotations have the sense opposite to the right-hand rule.
-        write(scale(column(parent, 1), -1.0), scratch, joint, HEADING)
-        write(scale(rotate(parent, (cos(hpb[0]), 0.0, sin(hpb[0]))), -1.0), scratch, joint, PITCH)
-        write(scale(column(frame, 2), -1.0), scratch, joint, BANK)
+        write(scale(column(parent, 1), -1.0), scratch, joint, AXES)
+        if turns(joint, 1, chain):
+            pitch = rotate(parent, (cos(hpb[0]), 0.0, sin(hpb[0])))
+            write(scale(pitch, -1.0), scratch, joint, AXES + 3)
+        write(scale(column(frame, 2), -1.0), scratch, joint, AXES + 6)
     return origin
+
+
+@kernel
+def beyond_reach(goal: Vector, chain: Linkage, scratch: Array) -> float:
+    """Return how far a goal lies beyond all bones that can turn, stretched toward it [length].
+
+    Args:
+        goal: World [length].
+        chain: The chain.
+        scratch: (n, WIDTH), its positions found.
+    """
+    reach, distance = 0.0, 0.0
+    for joint in range(chain.offsets.shape[0] - 1, -1, -1):
+        if turns(joint, 0, chain) or turns(joint, 1, chain) or turns(joint, 2, chain):
+            distance = norm(subtract(goal, read(scratch, joint, POSITION))) - reach
+        reach += norm(vector(chain.offsets, joint))
+    return distance
 
 
 @kernel
 def axis_of(joint: int, axis: int, scratch: Array) -> Vector:
     """Return a turning axis of a joint: 0 heading, 1 pitch, 2 bank."""
-    return read(scratch, joint, HEADING + 3 * axis)
+    return read(scratch, joint, AXES + 3 * axis)
 
 
 @kernel
-def motion(joint: int, axis: int, end: Vector, scratch: Array) -> Vector:
-    """Return how the end moves as one axis turns [length/rad]."""
-    return cross(axis_of(joint, axis, scratch), subtract(end, read(scratch, joint, POSITION)))
+def find_motions(end: Vector, chain: Linkage, scratch: Array) -> None:
+    """Put in place of every turning axis how it moves the end [length/rad]."""
+    for joint in range(chain.offsets.shape[0]):
+        arm = subtract(end, read(scratch, joint, POSITION))
+        for axis in range(3):
+            if turns(joint, axis, chain):
+                moves = cross(axis_of(joint, axis, scratch), arm)
+                write(moves, scratch, joint, AXES + 3 * axis)
+
+
+@kernel
+def motion(joint: int, axis: int, scratch: Array) -> Vector:
+    """Return how the end moves as one axis turns, after `find_motions` [length/rad]."""
+    return read(scratch, joint, AXES + 3 * axis)

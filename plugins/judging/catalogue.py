@@ -7,7 +7,7 @@ from math import degrees
 import numpy as np
 
 from limbik.core.rotation import Array
-from limbik.plugins.judging.curve import curl, unevenness
+from limbik.plugins.judging.curve import curl, s_shape, unevenness
 from limbik.plugins.judging.latency import latency
 from limbik.plugins.judging.limits import chatter, limit_excess
 from limbik.plugins.judging.mirror import asymmetry
@@ -16,6 +16,7 @@ from limbik.plugins.judging.motion import accelerations, gains, plane_speeds, po
 from limbik.plugins.judging.optimum import limit_error
 from limbik.plugins.judging.reach import excess_errors, false_statuses, reach_errors
 from limbik.plugins.judging.replay import drift, flips, history
+from limbik.plugins.judging.roundtrip import round_trip
 from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import roughness
 from limbik.plugins.judging.soundness import stretch, unsound_poses
@@ -123,6 +124,14 @@ METRICS: tuple[Metric, ...] = (
         _times(_DEG, drift),
         again=True,
     ),
+    Metric(
+        "round_trip",
+        "M12",
+        "°",
+        "pose change, IK to FK and back",
+        _times(_DEG, round_trip),
+        again=True,
+    ),
     Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry, again=True),
     Metric(
         "swivel_error",
@@ -141,6 +150,7 @@ METRICS: tuple[Metric, ...] = (
     ),
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
+    Metric("s_shape", "M17", "L", "change of the bend's side from the middle", s_shape),
     Metric(
         "mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour, again=True
     ),

@@ -8,7 +8,7 @@ from time import monotonic
 from typing import Final, TypeVar
 
 from limbik.core.errors import Fault, InputError
-from limbik.core.formats import Inspection, Output, SceneInput
+from limbik.core.formats import BodyBake, Inspection, Output, SceneInput
 from limbik.core.registry import Registry
 
 LONG: Final = 2000  # frames from which progress is shown
@@ -22,6 +22,18 @@ def output_for(path: Path, registry: Registry) -> Output:
         InputError: No output writes such files.
     """
     return _by_ending(path, list(registry.outputs().values()), "written")
+
+
+def body_writer(found: Output, path: Path) -> Callable[[BodyBake], str | bytes]:
+    """Return what writes scenes of several chains.
+
+    Raises:
+        InputError: The output writes single chains only.
+    """
+    if found.write_body is None:
+        message = f"files ending in '{path.suffix}' hold one chain, this scene has several"
+        raise InputError(Fault("ending", message, file=str(path)))
+    return found.write_body
 
 
 def inspect_file(path: Path, registry: Registry) -> Inspection:
