@@ -36,14 +36,18 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tables, int]:
 
 
 def start(folder: Path, engine: str) -> subprocess.Popen[bytes]:
-    """Start a run in a process group of its own."""
-    return subprocess.Popen(
-        command("run", "trial.yaml", "--engine", engine, "--workers", "2"),
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
+    """Start a run in a process group of its own, which hears Ctrl-C though this one may not."""
+    ours = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return subprocess.Popen(
+            command("run", "trial.yaml", "--engine", engine, "--workers", "2"),
+            cwd=folder,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+    finally:
+        signal.signal(signal.SIGINT, ours)
 
 
 def kill(run: subprocess.Popen[bytes]) -> None:
