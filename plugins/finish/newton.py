@@ -8,7 +8,7 @@ follow in a fixed order:
   a plane buckles out of it so, always to the same side.
 * Other folds are tried: the mirrored one, the ranges' middles, then starts spread over the ranges.
   The first that reaches the goal is the answer; one that does not only if it is nearer by far.
-* What was found settles next to the pose of the first descent, so that goals near each other get
+* What was found settles next to the CCD pose, so that goals near each other get
   poses near each other, whichever start led there.
 """
 
@@ -93,8 +93,8 @@ def newton(
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):
         write((angles[joint, 0], angles[joint, 1], angles[joint, 2]), scratch, joint, ANGLES)
-    nearest = descend(point, aimed, params.steps, COARSE, chain, scratch)
     copy_columns(ANGLES, HOME, scratch)
+    nearest = descend(point, aimed, params.steps, COARSE, chain, scratch)
     copy_columns(ANGLES, BEST, scratch)
     if nearest >= tolerance:
         nearest = _buckle(point, aimed, tolerance, nearest, params.steps, chain, scratch)
