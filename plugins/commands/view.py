@@ -30,10 +30,12 @@ def view(
     with reported():
         from limbik.core.bodyscene import read_any
         from limbik.core.registry import Registry
-        from limbik.plugins.viewer.server import Viewer, check_viewer
+        from limbik.plugins.viewer.server import Viewer, check_viewer, is_loopback
         from limbik.plugins.viewer.session import Session
 
         check_viewer()
+        if not is_loopback(host):
+            typer.echo("limbik: whoever reaches this address can use the page", err=True)
         registry = Registry()
         read = read_any(scene, registry)
         say_notes(read)

@@ -1,11 +1,13 @@
 """The server of the page: on this machine only unless asked, without a request to the outside."""
 
+import socket
 from contextlib import redirect_stdout
 from importlib.util import find_spec
 from io import StringIO
+from ipaddress import ip_address
 from typing import TYPE_CHECKING
 
-from limbik.core.errors import EnvironmentProblem
+from limbik.core.errors import EnvironmentProblem, Fault, InputError
 from limbik.plugins.viewer.session import Session
 
 if TYPE_CHECKING:
@@ -25,20 +27,34 @@ def check_viewer() -> None:
         raise EnvironmentProblem("the viewer needs viser: pip install 'limbik[view]'")
 
 
+def is_loopback(host: str) -> bool:
+    """Look whether an address can be listened at, and whether only this machine reaches it.
+
+    Raises:
+        InputError: It is no address of this machine.
+    """
+    try:
+        family, *_, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family) as trial:
+            trial.bind(address)
+    except OSError as error:
+        message = f"cannot listen at '{host}': {error.strerror or error}"
+        hint = f"{LOOPBACK} is this machine alone, 0.0.0.0 all that reach it"
+        raise InputError(Fault("host", message, "--host", hint=hint)) from error
+    return ip_address(address[0]).is_loopback
+
+
 class Viewer:
     """A session on a page, served until it is closed.
 
     Args:
         session: What is shown.
-        host: Address to listen at.
+        host: Address to listen at, that `is_loopback` has looked at.
         port: Port to begin looking for a free one at; 0 for any.
 
     Attributes:
         page: The page.
         url: Its address.
-
-    Raises:
-        EnvironmentProblem: The address cannot be listened at.
     """
 
     def __init__(self, session: Session, host: str = LOOPBACK, port: int = PORT) -> None:
@@ -50,12 +66,8 @@ class Viewer:
         from limbik.plugins.viewer.solver_panel import SolverPanel
 
         session.solve(stages=True)  # compiles, before anybody is let in
-        try:
-            with redirect_stdout(StringIO()):  # its greeting
-                self._server = ViserServer(host, port, label="limbik", verbose=False)
-        except OSError as error:
-            reason = error.strerror or error
-            raise EnvironmentProblem(f"cannot listen at {host}, port {port}: {reason}") from error
+        with redirect_stdout(StringIO()):  # its greeting
+            self._server = ViserServer(host, port, label="limbik", verbose=False)
         gui = self._server.gui
         gui.configure_theme(show_share_button=False, show_logo=False, brand_color=(11, 61, 145))
         gui.set_panel_label(session.name)

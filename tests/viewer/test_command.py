@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from limbik.core.errors import EnvironmentProblem
+from limbik.core.errors import EnvironmentProblem, InputError
 from limbik.plugins.viewer import server
 from limbik.tests.viewer.scenes import CONFIGS
 
@@ -23,6 +23,14 @@ def test_without_viser_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(server, "find_spec", lambda name: None)
     with pytest.raises(EnvironmentProblem, match=r"pip install 'limbik\[view\]'"):
         server.check_viewer()
+
+
+def test_an_address_of_another_machine_is_refused_and_loopback_is_known() -> None:
+    for host in ("203.0.113.1", "no.such.host.invalid"):
+        with pytest.raises(InputError, match="--host: cannot listen at"):
+            server.is_loopback(host)
+    assert server.is_loopback("127.0.0.1")
+    assert not server.is_loopback("0.0.0.0")
 
 
 def test_a_scene_with_a_fault_is_no_reason_to_serve(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from threading import Event
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.core.solution2d import PlanarSolution
 from limbik.core.solving import solve_scene
+from limbik.plugins.viewer.player import Player
 from limbik.plugins.viewer.session import LAST, Session, Shown
 from limbik.tests.viewer.scenes import Opened
 
@@ -214,3 +216,20 @@ def test_one_chain_of_a_body_is_solved_another_way_and_compared(opened: Opened) 
     session.change("left arm", session.chain.setup.with_option(("tolerance",), 0.01))
     assert session.chains["right arm"].setup.settings.tolerance == 0.0001
     assert session.solve()["left arm"].solution.reached
+
+
+def test_a_player_goes_on_until_it_is_stopped() -> None:
+    passed: list[float] = []
+    twice = Event()
+
+    def tick(seconds: float) -> None:
+        passed.append(seconds)
+        if len(passed) == 2:
+            twice.set()
+
+    player = Player(tick)
+    player.start()
+    assert twice.wait(20.0)
+    player.stop()
+    assert not player.plays
+    assert min(passed) > 0.0
