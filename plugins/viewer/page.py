@@ -49,6 +49,7 @@ class Page:
         self.apart = 0.6
         self._error, self._closed = "", False
         self._panels: list[Panel] = []
+        self._rows: list[tuple[str, Shown]] = []
         shown = session.solve(stages=True)
         set_stage(server, session, shown)
         self._status = server.gui.add_html("")
@@ -123,11 +124,12 @@ class Page:
             if self._closed:
                 return False
             try:
-                change()
-                shown = self.session.solve(stages=not dragged)
+                with self.session.tried():
+                    change()
+                    shown = self.session.solve(stages=not dragged)
             except LimbikError as error:
                 self._error = str(error)
-                self._status.content = status_html(self._rows(self.session.solve()), self._error)
+                self._status.content = status_html(self._rows, self._error)
                 return False
             self._error = ""
             self._show(shown, dragged)
@@ -154,8 +156,8 @@ class Page:
             compared = self.session.compared(shown)
             self._skeleton.update(self.session)
             self._show_compared(compared)
-            rows = self._rows(shown, compared)
-            self._status.content = status_html(rows, self._error)
+            self._rows = _rows(shown, compared)
+            self._status.content = status_html(self._rows, self._error)
             for panel in self._panels:
                 panel.update(shown, dragged)
 
@@ -170,15 +172,11 @@ class Page:
         self._other.update(shown.positions + shift, blocking(shown.solution))
         self._other_goal.position = to_page(shown.solution.goal + shift)
 
-    def _rows(
-        self, shown: dict[str, Shown], compared: Shown | None = None
-    ) -> list[tuple[str, Shown]]:
-        rows = list(shown.items())
-        if len(rows) == 1:
-            rows = [(name_of(one), one) for _, one in rows]
-        if compared is not None:
-            rows.append((name_of(compared), compared))
-        return rows
+
+def _rows(shown: dict[str, Shown], compared: Shown | None) -> list[tuple[str, Shown]]:
+    """Name what was solved: chains by their names, a single one by its solver."""
+    rows = list(shown.items()) if len(shown) > 1 else [(name_of(s), s) for s in shown.values()]
+    return rows if compared is None else [*rows, (name_of(compared), compared)]
 
 
 def name_of(shown: Shown) -> str:

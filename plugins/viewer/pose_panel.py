@@ -50,10 +50,11 @@ class PosePanel:
         self._add_path()
 
     def _select(self, control: Control, name: Any) -> bool:
-        self._page.select(name)
-        self._rotor.value = self._rotor_name()
-        self._build_rotor()
-        self.selected()
+        with self._session.lock:
+            self._page.select(name)
+            self._rotor.value = self._rotor_name()
+            self._build_rotor()
+            self.selected()
         return True
 
     def _add_path(self) -> None:
@@ -115,8 +116,9 @@ class PosePanel:
 
     def _choose_rotor(self, control: Control, name: str) -> bool:
         given = {NO_ROTOR: None, OWN_ROTOR: PoleRotor().model_dump()}.get(name, name)
-        taken = self._set_rotor(given)
-        self._build_rotor()
+        with self._session.lock:
+            taken = self._set_rotor(given)
+            self._build_rotor()
         return taken
 
     def _set_rotor(self, rotor: str | dict[str, Any] | None) -> bool:

@@ -4,7 +4,8 @@ One session serves all pages that are open. Its callers hold `lock`: requests co
 threads, and what counts is the newest state.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from threading import RLock
 
@@ -124,6 +125,7 @@ class Session:
         self.chains = {name: Chained(name, Setup.of(s, registry)) for name, s in scenes.items()}
         self.selected = next(iter(self.chains))
         self.path = Path.of(scene)
+        self.frame, self._time = 0, 0.0
         self.follow = any(given.follow for given in scenes.values())
         self.stage = LAST
         self.parts: set[str] = set()
@@ -227,6 +229,19 @@ class Session:
         if self._time > self.path.duration + PAUSE:
             self._time = 0.0
         self.go_to(self.path.frame(self._time), keep_time=True)
+
+    @contextmanager
+    def tried(self) -> Iterator[None]:
+        """Put goals, frame and past back if what is done inside is refused."""
+        kept = [(one, one.goal, one.turns) for one in self.chains.values()]
+        frame, past = self.frame, self._past
+        try:
+            yield
+        except LimbikError:
+            for one, goal, turns in kept:
+                one.goal, one.turns = goal, turns
+            self.frame, self._past, self._solver = frame, past, None
+            raise
 
     def _take(self, frame: int) -> None:
         """Take the goals of a frame."""

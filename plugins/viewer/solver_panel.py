@@ -85,9 +85,12 @@ class SolverPanel:
             use = Control(("use",), "choice", choices=tuple(names), text=self._about(slot, name))
 
             def choose(control: Control, value: Any) -> bool:
-                taken = self._try(lambda setup: setup.with_strategy(slot, setup.fresh(slot, value)))
-                if taken:
-                    self._build_all()
+                with self._session.lock:
+                    taken = self._try(
+                        lambda setup: setup.with_strategy(slot, setup.fresh(slot, value))
+                    )
+                    if taken:
+                        self._build_all()
                 return taken
 
             add_control(gui, use, name, choose)
@@ -116,9 +119,10 @@ class SolverPanel:
                 add_control(gui, control, held, self._set_option)
 
     def _set_option(self, control: Control, value: Any) -> bool:
-        taken = self._try(lambda setup: setup.with_option(control.path, value))
-        if taken and control.kind == "switch":
-            self._build_options()
+        with self._session.lock:
+            taken = self._try(lambda setup: setup.with_option(control.path, value))
+            if taken and control.kind == "switch":
+                self._build_options()
         return taken
 
     def _build_fk(self) -> None:
@@ -137,8 +141,9 @@ class SolverPanel:
                 add_control(gui, control, angle, self._turn)
 
     def _choose_joint(self, control: Control, value: Any) -> bool:
-        self._joint = value
-        self._build_fk()
+        with self._session.lock:
+            self._joint = value
+            self._build_fk()
         return True
 
     def _turn(self, control: Control, value: Any) -> bool:

@@ -233,3 +233,20 @@ def test_a_player_goes_on_until_it_is_stopped() -> None:
     player.stop()
     assert not player.plays
     assert min(passed) > 0.0
+
+
+def test_what_is_refused_on_the_way_leaves_goals_and_frame_as_they_were(opened: Opened) -> None:
+    session = opened("arm")
+    goal = session.chain.goal.copy()
+
+    def fail() -> None:
+        with session.tried():
+            session.go_to(3)
+            session.turn_goal("arm", np.array([0.0, 0.1, 0.0]))
+            session.move_goal("arm", np.array([0.0, math.nan, 0.0]))
+
+    with pytest.raises(InputError):
+        fail()
+    np.testing.assert_array_equal(session.chain.goal, goal)
+    assert session.frame == 0
+    assert session.chain.turns is None
