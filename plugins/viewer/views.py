@@ -10,6 +10,7 @@ from limbik.core.rotation import Array
 
 _FLAT = 1e-9  # thickness over length
 _POSES = 16
+_AWAY = np.array([-0.75, 0.35, 1.0])  # from here no two arrows of a gizmo lie on each other
 _FILLED = 0.8  # of the angle of view
 
 
@@ -63,12 +64,12 @@ class Camera:
 
 
 def camera(points: Array, flat: Flat | None) -> Camera:
-    """Return a camera that sees points, (m, 3): from the front right, or square to a plane."""
+    """Return a camera that sees points, (m, 3): from the front left, or square to a plane."""
     low, high = points.min(0), points.max(0)
     middle = (low + high) / 2.0
     field = 12.0 if flat else 40.0
-    away = np.array([0.75, 0.35, 1.0]) if flat is None else flat.axes[:, 2]
-    away /= np.linalg.norm(away)
+    away = _AWAY if flat is None else flat.axes[:, 2]
+    away = away / np.linalg.norm(away)
     before = (points - middle) @ away
     aside = np.linalg.norm(points - middle - np.outer(before, away), axis=1)
     distance = (aside / np.tan(np.radians(_FILLED * field) / 2.0) + before).max()

@@ -56,8 +56,9 @@ class Client:
         self.send(wire.GuiUpdateMessage(self.widget(label)._impl.uuid, {"value": value}))
 
     def widget(self, label: str) -> Any:
-        known = self.viewer.page.server.gui._gui_input_handle_from_uuid.values()
-        return next(handle for handle in known if getattr(handle, "label", "") == label)
+        with self.viewer.page.session.lock:  # panels are remade under it
+            known = self.viewer.page.server.gui._gui_input_handle_from_uuid.values()
+            return next(handle for handle in known if getattr(handle, "label", "") == label)
 
     def close(self) -> None:
         self._line.close()
