@@ -115,6 +115,7 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         plain_clamp=settings.clamp == "plain",
         from_current=settings.start == "current",
         soft_zone=settings.soft_zone,
+        end_orientation=settings.end_orientation,
         fk_strength=settings.fk_strength,
         fk_mix=settings.fk_mix,
     )

@@ -45,7 +45,7 @@ from limbik.core.pole import Pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
-from limbik.core.sceneplane import solver_faults
+from limbik.core.sceneoptions import option_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
@@ -154,7 +154,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     body = source.body
     joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
     faults += _name_faults(joints, model, document)
-    faults += _settings_faults(len(joints), model, document)
+    faults += option_faults(joints, model, document)
     chain, solver = body.chain if body else None, None
     try:
         chain = chain or _chain(model)
@@ -282,23 +282,6 @@ def _twice(
             message = f"the {what} '{name}' is given twice, first at line {line}"
             yield document.fault("duplicate-name", message, (*path, index, "name"))
         first.setdefault(name, index)
-
-
-def _settings_faults(count: int, model: SceneModel, document: Document) -> Iterator[Fault]:
-    """Check the options that only make sense together with a chain of so many joints."""
-    yield from solver_faults(model, document)
-    options = model.options
-    if count < 2:
-        return
-    least = 0 if model.solver == "2d" else 1
-    if not least <= options.bend_reference < count:
-        message = f"must be {least} to {count - 1} in a chain of {count} joints"
-        found = f"{message}, not {options.bend_reference}"
-        yield document.fault("range", found, ("options", "bend_reference"))
-    held = options.held.base + options.held.end
-    if held >= count:
-        message = f"{held} joints are held, the chain has {count} and one must stay free"
-        yield document.fault("held", message, ("options", "held"))
 
 
 def _chain(model: SceneModel) -> Chain:

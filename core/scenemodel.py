@@ -119,7 +119,10 @@ class GoalModel(Model):
     position: Annotated[Place, Field(description="in the world [length]")]
     rotation: Annotated[
         Turn | None,
-        Field(description="in the world, HPB [deg]; turns the pole rotor of the 2D solver"),
+        Field(
+            description="in the world, HPB [deg]; turns the pole rotor of the 2D solver, "
+            "and the end by the option end_orientation"
+        ),
     ] = None
 
 

@@ -130,6 +130,10 @@ class Settings(Model):
         float,
         Field(ge=0.0, le=0.5, description="last part of the reach, pulled in smoothly; 0 = off"),
     ] = 0.0
+    end_orientation: Annotated[
+        float,
+        Field(ge=0.0, le=1.0, description="share of the goal's orientation the end takes over [-]"),
+    ] = 0.0
     fk_strength: Annotated[
         float, Field(ge=0.0, le=1.0, description="strength of FK offsets [-]")
     ] = 1.0
@@ -159,6 +163,7 @@ ONLY_3D: Final = (
     "clamp",
     "start",
     "soft_zone",
+    "end_orientation",
 )
 """Settings the 2D solver has no use for; giving one is an error."""
 

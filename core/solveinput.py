@@ -57,6 +57,17 @@ def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Arra
     return array
 
 
+def checked_turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
+    """Return turns of goals; a row of NaNs stands for a goal without one."""
+    try:
+        rows = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        return checked(values, shape, "goal turns")
+    absent = np.isnan(rows).all(axis=-1, keepdims=True)
+    found = checked(np.where(absent, 0.0, rows), shape, "goal turns")
+    return np.where(absent, np.nan, found)
+
+
 def _shown(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
 

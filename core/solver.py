@@ -22,7 +22,7 @@ from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
-from limbik.core.solveinput import Arrays, check_joints, checked
+from limbik.core.solveinput import Arrays, check_joints, checked, checked_turns
 
 FAILED = 10  # status numbers from here on name the slot whose strategy failed
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
@@ -116,6 +116,7 @@ class Solver:
         fk_offsets: ArrayLike | None = None,
         continuity: Continuity | None = None,
         trace: bool = False,
+        goal_turn: ArrayLike | None = None,
     ) -> Solution:
         """Put the chain's end on a goal.
 
@@ -124,6 +125,8 @@ class Solver:
             fk_offsets: FK component relative to the rest pose, HPB, (n, 3) [rad].
             continuity: What an earlier solve returned; None solves without a past (M-02).
             trace: Whether to return every stage's pose.
+            goal_turn: How the goal is turned in the world, HPB, (3,) [rad], or NaNs; the end takes
+                it over by the setting `end_orientation` (M-05).
 
         Returns:
             The pose with status, distance and the continuity for a next solve.
@@ -133,7 +136,9 @@ class Solver:
             PluginError: A strategy gave a result that is not a number.
         """
         rows = checked(goal, (3,), "goal").reshape(1, 3)
-        return self._solve_row(self._goals(rows), fk_offsets, continuity, trace)
+        if goal_turn is not None:
+            goal_turn = checked_turns(goal_turn, (3,)).reshape(1, 3)
+        return self._solve_row(self._rows(rows, goal_turn), fk_offsets, continuity, trace)
 
     def solve_many(
         self,
@@ -141,6 +146,7 @@ class Solver:
         *,
         fk_offsets: ArrayLike | None = None,
         threads: int | None = None,
+        goal_turns: ArrayLike | None = None,
     ) -> Solution:
         """Solve goals that have nothing to do with each other, on all cores.
 
@@ -148,6 +154,7 @@ class Solver:
             goals: World positions, (m, 3) [length].
             fk_offsets: As in `solve`, one set for all goals.
             threads: How many to use; None for as many as there are cores.
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
 
         Returns:
             A solution whose arrays have a leading goal axis; bit for bit what `solve` gives.
@@ -157,7 +164,7 @@ class Solver:
             PluginError: A strategy gave a result that is not a number.
         """
         rows = checked(goals, (None, 3), "goals")
-        return self._solve_rows(self._goals(rows), fk_offsets, threads)
+        return self._solve_rows(self._rows(rows, goal_turns), fk_offsets, threads)
 
     def follow(
         self,
@@ -165,6 +172,7 @@ class Solver:
         *,
         fk_offsets: ArrayLike | None = None,
         continuity: Continuity | None = None,
+        goal_turns: ArrayLike | None = None,
     ) -> Solution:
         """Solve a path in order, each goal with the continuity of the one before.
 
@@ -172,6 +180,7 @@ class Solver:
             goals: World positions, (m, 3) [length].
             fk_offsets: As in `solve`, one set for all goals.
             continuity: State before the first goal; None for the rest pose's.
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
 
         Returns:
             A solution with a leading goal axis and the continuity after the last goal.
@@ -181,7 +190,7 @@ class Solver:
             PluginError: A strategy gave a result that is not a number.
         """
         rows = checked(goals, (None, 3), "goals")
-        return self._follow_rows(self._goals(rows), fk_offsets, continuity)
+        return self._follow_rows(self._rows(rows, goal_turns), fk_offsets, continuity)
 
     def _solve_row(
         self,
@@ -290,6 +299,17 @@ class Solver:
         if not self.settings.reach_limit:
             return goals
         return np.array(pull_into_reach(self.chain, goals), order="C")
+
+    def _rows(self, goals: Array, turns: ArrayLike | None) -> Array:
+        """Return what the kernel takes for each goal: its position, and its turn if it has one."""
+        goals = self._goals(goals)
+        if turns is None:
+            return goals
+        given = checked_turns(turns, (None, 3))
+        if len(given) != len(goals):
+            message = f"goal turns: expected {len(goals)}, one a goal, found {len(given)}"
+            raise InputError(message)
+        return np.hstack([goals, given])
 
     def _memory(self, continuity: Continuity | None) -> Array:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""

@@ -72,6 +72,8 @@ class Options(NamedTuple):
     """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
     soft_zone: float
     """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
+    end_orientation: float
+    """Share of the goal's orientation that the end takes over; 0 = off."""
     fk_strength: float
     fk_mix: float
 

@@ -1,6 +1,6 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
-from math import atan2, isnan
+from math import atan2, isnan, nan
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
@@ -19,6 +19,7 @@ from limbik.core.kernels.frames import (
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
 from limbik.core.kernels.mix import mixed, wrap_free
+from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -71,7 +72,7 @@ def solve_goals(
         body: The chain, n joints.
         options: Of the solve.
         plugs: Of the solve.
-        goals: (m, 3) [length], world.
+        goals: (m, 3) [length], world; or (m, 6), then how they are turned, HPB [rad], or NaN.
         fk: FK offsets, HPB, (n, 3) [rad].
         memory: Continuity, (n + 4, 3): see `limbik.core.solution.Continuity`. Ends as the one
             after the last goal.
@@ -93,7 +94,10 @@ def solve_goals(
         if not chained:
             copy_rows(kept, memory)
         goal = vector(goals, row)
-        stages = _solve(goal, body, options, plugs, fk, memory, pose, numbers[row], trace)
+        turn = (nan, nan, nan)
+        if goals.shape[1] > 3:
+            turn = (goals[row, 3], goals[row, 4], goals[row, 5])
+        stages = _solve(goal, turn, body, options, plugs, fk, memory, pose, numbers[row], trace)
         copy_rows(pose.angles, angles[row])
         copy_rows(pose.positions, positions[row])
         for joint in range(n):
@@ -112,6 +116,7 @@ def copy_rows(source: Array, out: Array) -> None:
 @kernel
 def _solve(
     goal: Vector,
+    turn: Vector,
     body: Body,
     options: Options,
     plugs: Plugs,
@@ -156,6 +161,8 @@ def _solve(
                 if not end_solve(pursued, body, options, plugs, pose):
                     failed = FAILED + 4
                 stages = _record(stages, pose, trace)
+            if options.max_iterations > 0 and options.end_orientation > 0.0 and not isnan(turn[0]):
+                orient_end(turn, options.end_orientation, body, pose)
     _settle_pose(body, options, fk, memory, pose)
     _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
     return stages

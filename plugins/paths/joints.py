@@ -1,7 +1,7 @@
 """Joint motion: every sample solved in order, and what is wrong with it, by time and place (J-07).
 
-Goals are the positions of the samples; orientation is not solved for yet, and how far the end's
-differs is told by `orientation_error`.
+Goals are the positions of the samples. Their orientations are taken over by the end joint as far
+as `end_orientation` and its limits let it; `orientation_error` tells what is left.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
@@ -126,7 +126,8 @@ def joint_motion(
         PluginError: A strategy failed.
     """
     allowed = _allowed(solver, speed_limits or {})
-    solution = solver.follow(samples.positions, continuity=continuity)
+    turns = matrix_to_hpb(samples.rotations) if solver.settings.end_orientation else None
+    solution = solver.follow(samples.positions, continuity=continuity, goal_turns=turns)
     angles = _unwound(solver, solution.angles)
     found = [
         *_unreached(samples, solver, solution),

@@ -1,0 +1,39 @@
+"""Options of a scene must fit its joints and its goals."""
+
+from collections.abc import Iterator, Sequence
+
+from limbik.core.errors import Fault
+from limbik.core.scenemodel import CsvModel, SceneModel
+from limbik.core.sceneplane import solver_faults
+from limbik.core.yamlfile import Document
+
+
+def option_faults(names: Sequence[str], model: SceneModel, document: Document) -> Iterator[Fault]:
+    """Check the options that only make sense together with a chain of these joints."""
+    yield from solver_faults(model, document)
+    yield from _end_faults(model, document)
+    options, count = model.options, len(names)
+    if count < 2:
+        return
+    least = 0 if model.solver == "2d" else 1
+    if not least <= options.bend_reference < count:
+        message = f"must be {least} to {count - 1} in a chain of {count} joints"
+        found = f"{message}, not {options.bend_reference}"
+        yield document.fault("range", found, ("options", "bend_reference"))
+    held = options.held.base + options.held.end
+    if held >= count:
+        message = f"{held} joints are held, the chain has {count} and one must stay free"
+        yield document.fault("held", message, ("options", "held"))
+
+
+def _end_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+    """An end can take over the goals' orientation only where a goal has one."""
+    if not model.options.end_orientation or model.trajectory is not None:
+        return
+    hint = "goals of a CSV file have none"
+    if not isinstance(model.goals, CsvModel):
+        if not model.goals or any(goal.rotation is not None for goal in model.goals):
+            return
+        hint = "give the goals a 'rotation'"
+    message = "no goal has a rotation that the end could take over"
+    yield document.fault("no-rotation", message, ("options", "end_orientation"), hint=hint)
