@@ -1,5 +1,6 @@
 """From chain and settings to the flat arrays the compiled solve runs on."""
 
+from collections.abc import Mapping
 from math import radians
 from typing import Final
 
@@ -27,6 +28,23 @@ AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
     "y+": (0.0, 1.0),
     "y-": (0.0, -1.0),
 }
+
+
+CHOICES: Final = ("nearest", "margin")
+"""The words of `Choose.by` in the order of `limbik.core.kernels.choose`, from 1."""
+
+
+def by_joint(chain: Chain, values: Mapping[str, float], default: float) -> Array:
+    """Return what is given by joints' names as an array, (n,)."""
+    return np.array([values.get(name, default) for name in chain.names], np.float64)
+
+
+def reference_pose(chain: Chain, given: Mapping[str, tuple[float, float, float]] | None) -> Array:
+    """Return the rest pose with some joints' angles [deg] replaced, inside the limits [rad]."""
+    pose = chain.rest.copy()
+    for name, angles in (given or {}).items():
+        pose[chain.names.index(name)] = np.radians(angles)
+    return np.clip(pose, chain.low, chain.high)
 
 
 def flat_body(chain: Chain, settings: Settings) -> Body:
@@ -83,6 +101,7 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         name = chain.names[settings.bend_reference - 1]
         raise ChainError("the chain has no length from the bend root to the end", name)
     cone, held = settings.forbidden_cone, settings.held
+    choose = settings.choose
     axis_x, axis_y = AXES[settings.reference_axis]
     return Options(
         full_fk=not settings.ik,
@@ -115,6 +134,11 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         plain_clamp=settings.clamp == "plain",
         from_current=settings.start == "current",
         soft_zone=settings.soft_zone,
+        choose=0 if choose is None else CHOICES.index(choose.by) + 1,
+        candidates=0 if choose is None else choose.candidates,
+        choose_pose_given=choose is not None and choose.pose is not None,
+        choose_pose=reference_pose(chain, None if choose is None else choose.pose),
+        choose_weights=by_joint(chain, {} if choose is None else choose.weights, 1.0),
         end_orientation=settings.end_orientation,
         fk_strength=settings.fk_strength,
         fk_mix=settings.fk_mix,

@@ -45,13 +45,12 @@ from limbik.core.pole import Pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
-from limbik.core.sceneoptions import option_faults
+from limbik.core.sceneoptions import option_faults, unknown_joints
 from limbik.core.settings import Settings
 from limbik.core.slots import SLOTS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
-from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
 
@@ -265,11 +264,7 @@ def _name_faults(names: Sequence[str], model: SceneModel, document: Document) ->
         message = f"a chain has 2 to {MAX_JOINTS} joints, this one has {len(names)}"
         yield document.fault("joint-count", message, joints)
     yield from _twice(names, joints, "joint", document)
-    for name in model.fk:
-        if name not in names:
-            hint = near_match(name, list(names)) or f"known: {', '.join(names[:12])}"
-            message = f"no joint is called '{name}'"
-            yield document.fault("unknown-joint", message, ("fk", name), hint=hint, at_key=True)
+    yield from unknown_joints(model.fk, names, ("fk",), document)
 
 
 def _twice(

@@ -1,11 +1,13 @@
 """Options of a scene must fit its joints and its goals."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from limbik.core.errors import Fault
 from limbik.core.scenemodel import CsvModel, SceneModel
 from limbik.core.sceneplane import solver_faults
-from limbik.core.yamlfile import Document
+from limbik.core.settings import joint_tables
+from limbik.core.wording import near_match
+from limbik.core.yamlfile import Document, KeyPath
 
 
 def option_faults(names: Sequence[str], model: SceneModel, document: Document) -> Iterator[Fault]:
@@ -15,6 +17,8 @@ def option_faults(names: Sequence[str], model: SceneModel, document: Document) -
     options, count = model.options, len(names)
     if count < 2:
         return
+    for path, table in joint_tables(options):
+        yield from unknown_joints(table, names, ("options", *path), document)
     least = 0 if model.solver == "2d" else 1
     if not least <= options.bend_reference < count:
         message = f"must be {least} to {count - 1} in a chain of {count} joints"
@@ -24,6 +28,17 @@ def option_faults(names: Sequence[str], model: SceneModel, document: Document) -
     if held >= count:
         message = f"{held} joints are held, the chain has {count} and one must stay free"
         yield document.fault("held", message, ("options", "held"))
+
+
+def unknown_joints(
+    given: Iterable[str], names: Sequence[str], path: KeyPath, document: Document
+) -> Iterator[Fault]:
+    """Check that the keys of a mapping are joints."""
+    for name in given:
+        if name not in names:
+            hint = near_match(name, list(names)) or f"known: {', '.join(names[:12])}"
+            message = f"no joint is called '{name}'"
+            yield document.fault("unknown-joint", message, (*path, name), hint=hint, at_key=True)
 
 
 def _end_faults(model: SceneModel, document: Document) -> Iterator[Fault]:

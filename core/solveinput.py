@@ -6,7 +6,8 @@ from numpy.typing import ArrayLike
 from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, InputError
 from limbik.core.rotation import Array
-from limbik.core.settings import Settings
+from limbik.core.settings import Settings, joint_tables
+from limbik.core.wording import near_match
 
 LARGEST = 1e100  # squares of larger numbers overflow
 
@@ -88,6 +89,12 @@ def check_joints(chain: Chain, settings: Settings, first: int) -> None:
             f"bend_reference {settings.bend_reference}: this chain of {len(chain)} joints "
             f"allows {first} to {len(chain) - 1}"
         )
+    for path, table in joint_tables(settings):
+        for name in table:
+            if name not in chain.names:
+                known = near_match(name, list(chain.names)) or f"known: {', '.join(chain.names)}"
+                message = f"{'.'.join(path)}: no joint is called '{name}' ({known})"
+                raise ChainError(message)
     held = settings.held.base + settings.held.end
     if held > len(chain) - 1:
         raise ChainError(

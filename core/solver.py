@@ -201,8 +201,8 @@ class Solver:
     ) -> Solution:
         """Solve one row, (1, k): the goal, then what else the kernel takes for each."""
         memory = self._memory(continuity)
-        # The early stages, the rounds and the finish.
-        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + 1
+        # The early stages, the rounds, the finish and the choice.
+        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + 2
         out = Arrays(1, len(self.chain), stages if trace else 0, self._columns)
         count = self._run(rows, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
@@ -352,7 +352,7 @@ class Solver:
 
     def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
         rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
-        names = [*self._early_stages, *rounds, "finish"]
+        names = [*self._early_stages, *rounds, "finish", "choice"]
         positions, _ = forward_kinematics(self.chain, angles)
         return tuple(
             Stage(name, pose, places)

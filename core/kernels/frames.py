@@ -43,6 +43,7 @@ def new_pose(n: int) -> Pose:
         np.zeros((3, n)),
         np.zeros((n, 3)),
         np.zeros((8, 3)),
+        np.zeros((3, n, 3)),
         np.zeros((n, 32)),
         np.zeros(1),
     )

@@ -72,6 +72,14 @@ class Options(NamedTuple):
     """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
     soft_zone: float
     """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
+    choose: int
+    """How to choose among solutions: 0 = take the first, see `limbik.core.kernels.choose`."""
+    candidates: int
+    choose_pose_given: bool
+    choose_pose: Array
+    """Reference pose if given, (n, 3) [rad]."""
+    choose_weights: Array
+    """(n,) [-]"""
     end_orientation: float
     """Share of the goal's orientation that the end takes over; 0 = off."""
     fk_strength: float
@@ -121,6 +129,8 @@ class Pose(NamedTuple):
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
     scratch: Array
     """Arguments of strategies, (8, 3)."""
+    kept: Array
+    """Angles set aside by the choice of a solution, (3, n, 3) [rad]."""
     finish_rows: Array
     """What a finish works in, (n, 32)."""
     verdict: Array

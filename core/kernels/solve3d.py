@@ -6,6 +6,7 @@ from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
 from limbik.core.kernels.bend_vector import find_bend_vector, usable
 from limbik.core.kernels.ccd import ccd_round
+from limbik.core.kernels.choose import choose_pose
 from limbik.core.kernels.finish import end_solve, status_of
 from limbik.core.kernels.frames import (
     base_rotation,
@@ -161,6 +162,10 @@ def _solve(
                 if not end_solve(pursued, body, options, plugs, pose):
                     failed = FAILED + 4
                 stages = _record(stages, pose, trace)
+                if options.choose != 0 and failed == 0:
+                    if not choose_pose(pursued, body, options, plugs, memory, pose):
+                        failed = FAILED + 4
+                    stages = _record(stages, pose, trace)
             if options.max_iterations > 0 and options.end_orientation > 0.0 and not isnan(turn[0]):
                 orient_end(turn, options.end_orientation, body, pose)
     _settle_pose(body, options, fk, memory, pose)

@@ -35,6 +35,9 @@ def mirrored_settings(settings: Settings) -> Settings:
     if cone is not None and cone.axis[0] == "x":
         axis = "x-" if cone.axis == "x+" else "x+"
         changes["forbidden_cone"] = {**cone.model_dump(), "axis": axis}
+    if settings.choose is not None and settings.choose.pose is not None:
+        pose = {name: (-h, p, -b) for name, (h, p, b) in settings.choose.pose.items()}
+        changes["choose"] = {**settings.choose.model_dump(), "pose": pose}
     return Settings(**{**settings.model_dump(exclude_unset=True), **changes})
 
 
