@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from limbik.core.compiler import invoker
 from limbik.core.jit import entry
-from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, FINISH, INITIAL_BEND, ROOT_CONTROL
+from limbik.core.slots import (
+    BANK_SUPPRESSION,
+    BEND_VECTOR,
+    FINISH,
+    INITIAL_BEND,
+    LIMIT,
+    ROOT_CONTROL,
+)
 
 Array = NDArray[np.float64]
 
@@ -21,6 +28,7 @@ _bend_vector = invoker(BEND_VECTOR)
 _root_control = invoker(ROOT_CONTROL)
 _bank_suppression = invoker(BANK_SUPPRESSION)
 _finish = invoker(FINISH)
+_limit = invoker(LIMIT)
 
 
 @entry
@@ -98,6 +106,8 @@ def call_finish(
     base_rotation: Array,
     low: Array,
     high: Array,
+    limits: NDArray[np.int64],
+    limit_params: Array,
     reachable: int,
     params_array: Array,
     angles: Array,
@@ -105,7 +115,15 @@ def call_finish(
     verdict: Array,
 ) -> None:
     """Let a finish move `angles` (n, 3) [rad] to the goal."""
-    chain = (offsets, frozen, base_position, base_rotation, low, high)
+    chain = (offsets, frozen, base_position, base_rotation, low, high, limits, limit_params)
     work = (params_array, angles, scratch, verdict)
     if not _finish(address, (goal, tolerance, length, *chain, reachable, *work)):
         angles[:] = nan
+
+
+@entry
+def call_limit(address: int, angles: Array, params_array: Array, margin: Array) -> None:
+    """Let a joint's limit pull `angles` (3,) [rad] inside and write its `margin` (1,) [rad]."""
+    if not _limit(address, (angles, params_array, margin)):
+        angles[:] = nan
+        margin[:] = nan

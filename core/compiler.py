@@ -18,7 +18,7 @@ import numba.extending
 
 from limbik.core import cache, sources
 from limbik.core.errors import PluginError
-from limbik.core.jit import COMPILES, Entry
+from limbik.core.jit import COMPILES, Entry, Late
 from limbik.core.slots import SLOTS, Slot
 from limbik.core.strategy import Parameter, Strategy, layout, unflatten
 from limbik.core.wrappers import TEMPLATES
@@ -168,6 +168,8 @@ def _compiled(function: Any) -> Any:
     limbik's kernels do without numba's memory runtime. None gets wrappers for calls from outside,
     which took a third of the time to compile.
     """
+    if isinstance(function, Late):
+        function = function.target()
     plain = cast(FunctionType, function.function if isinstance(function, Entry) else function)
     if id(plain) not in _COMPILED:
         copy, fill = sources.rebuilt(plain, "kernel", _compiled)
@@ -219,8 +221,9 @@ def _type(kind: str) -> Any:
     vector = _types.Array(_types.float64, 1, "C")
     matrix = _types.Array(_types.float64, 2, "C")
     matrices = _types.Array(_types.float64, 3, "C")
+    counts = _types.Array(_types.int64, 1, "C")
     simple = {"count": _types.int64, "number": _types.float64, "matrix": matrix}
-    return (simple | {"matrices": matrices}).get(kind, vector)
+    return (simple | {"counts": counts, "matrices": matrices}).get(kind, vector)
 
 
 def _signature(slot: Slot) -> tuple[Any, ...]:

@@ -134,6 +134,8 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         plain_clamp=settings.clamp == "plain",
         from_current=settings.start == "current",
         soft_zone=settings.soft_zone,
+        compliance=1.0 - by_joint(chain, settings.stiffness, 0.0),
+        limit_ease=radians(settings.limit_ease),
         choose=0 if choose is None else CHOICES.index(choose.by) + 1,
         candidates=0 if choose is None else choose.candidates,
         choose_pose_given=choose is not None and choose.pose is not None,

@@ -47,7 +47,7 @@ from limbik.core.rotation import Array
 from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
 from limbik.core.sceneoptions import option_faults, unknown_joints
 from limbik.core.settings import Settings
-from limbik.core.slots import SLOTS, SOLVER
+from limbik.core.slots import LIMIT, OPTIONS, SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
@@ -208,21 +208,28 @@ def _turns(model: SceneModel) -> Array | None:
     return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
 
 
-def _choices(content: Any) -> Iterator[tuple[str, Any]]:
-    """Give the slots a scene chooses a strategy for, unchecked."""
-    options = content.get("options") if isinstance(content, dict) else None
-    if isinstance(content, dict) and content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
-        yield SOLVER.name, content[SOLVER.name]
+def _choices(content: Any) -> Iterator[tuple[KeyPath, str, Any]]:
+    """Give place, slot and choice of every strategy a scene chooses, unchecked."""
+    if not isinstance(content, dict):
+        return
+    if content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
+        yield (SOLVER.name,), SOLVER.name, content[SOLVER.name]
+    options = content.get("options")
     if isinstance(options, dict):
-        yield from ((slot, options[slot]) for slot in SLOTS if slot in options)
+        yield from ((("options", slot), slot, options[slot]) for slot in OPTIONS if slot in options)
+    chain = content.get("chain")
+    joints = chain.get("joints") if isinstance(chain, dict) else None
+    for number, joint in enumerate(joints if isinstance(joints, list) else ()):
+        if isinstance(joint, dict) and LIMIT.name in joint:
+            yield ("chain", "joints", number, LIMIT.name), LIMIT.name, joint[LIMIT.name]
 
 
 def _checkable(content: Any) -> Any:
-    """Leave out choices without a strategy's name: `_strategy_faults` has them already."""
+    """Leave out options without a strategy's name: `_strategy_faults` has them already."""
     nameless = [
         slot
-        for slot, choice in _choices(content)
-        if slot != SOLVER.name
+        for place, slot, choice in _choices(content)
+        if place[0] == "options"
         and isinstance(choice, dict)
         and not isinstance(choice.get("use"), str)
     ]
@@ -234,7 +241,7 @@ def _checkable(content: Any) -> Any:
 
 def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[Fault]:
     """Check each chosen strategy and its parameters against the registry."""
-    for slot, choice in _choices(document.content):
+    for place, slot, choice in _choices(document.content):
         if not isinstance(choice, str | dict):
             continue
         registry = registry or Registry()
@@ -243,7 +250,6 @@ def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[
         except InputError as error:
             for fault in error.faults:
                 key = "use" if fault.code == "unknown-strategy" else fault.key
-                place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
                 path = (*place, *_key_path(key))
                 at_key = fault.code == "unknown-key"
                 message = fault.message
@@ -304,6 +310,7 @@ def _joint(joint: JointModel) -> Joint:
         joint.pitch,
         joint.bank,
         joint.planar,
+        limit=joint.limit,
     )
 
 

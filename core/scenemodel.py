@@ -103,6 +103,10 @@ class JointModel(Model):
             "[deg]; absent = the pitch range, [-180, 180] = free"
         ),
     ] = None
+    limit: Annotated[
+        str | dict[str, Any] | None,
+        Field(description="a limit of its own in place of the ranges: {use: name, ...}"),
+    ] = None
 
 
 class ChainModel(Model):

@@ -159,6 +159,16 @@ class Settings(Model):
         float,
         Field(ge=0.0, le=0.5, description="last part of the reach, pulled in smoothly; 0 = off"),
     ] = 0.0
+    stiffness: Annotated[
+        dict[str, Annotated[float, Field(ge=0.0, lt=1.0)]],
+        Field(
+            description="share by which CCD turns a joint less; `held` keeps joints still [-]",
+        ),
+    ] = {}
+    limit_ease: Annotated[
+        float,
+        Field(ge=0.0, le=90.0, description="zone before a limit where CCD slows; 0 = off [deg]"),
+    ] = 0.0
     end_orientation: Annotated[
         float,
         Field(ge=0.0, le=1.0, description="share of the goal's orientation the end takes over [-]"),
@@ -189,6 +199,7 @@ def joint_tables(settings: Settings) -> Iterator[tuple[tuple[str, ...], Mapping[
     if settings.choose is not None:
         yield ("choose", "pose"), settings.choose.pose or {}
         yield ("choose", "weights"), settings.choose.weights
+    yield ("stiffness",), settings.stiffness
 
 
 ONLY_3D: Final = (
@@ -207,6 +218,8 @@ ONLY_3D: Final = (
     "soft_zone",
     "end_orientation",
     "choose",
+    "stiffness",
+    "limit_ease",
 )
 """Settings the 2D solver has no use for; giving one is an error."""
 

@@ -15,6 +15,7 @@ from limbik.core.chain import Chain
 from limbik.core.errors import InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_options
 from limbik.core.jit import Entry
+from limbik.core.jointlimits import bound_limits, flat_limits
 from limbik.core.pose import forward_kinematics
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
@@ -63,6 +64,7 @@ class Solver:
         self.strategies: dict[str, Bound] = {
             slot: self.registry.bind(slot, getattr(given, slot)) for slot in self._slots
         }
+        self.limits = bound_limits(chain, given, self.registry)
         self._fixed: tuple[Any, ...] = self._flatten()
         self._none = np.zeros((len(chain), 3))
         self._fresh = np.zeros((len(chain) + 4, 3))
@@ -87,11 +89,14 @@ class Solver:
     def _plugs(self) -> Plugs:
         """Addresses and parameters of the strategies; compiles them on first use."""
         chosen, unused = self.strategies, np.zeros(MAX_PARAMS)
+        limits, limit_params = flat_limits(self.chain, self.limits)
         return Plugs(
             **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
             params=np.array(
                 [chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]
             ),
+            limits=limits,
+            limit_params=limit_params,
         )
 
     @cached_property
@@ -262,7 +267,8 @@ class Solver:
 
     def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
         """Make the solution of one goal or many; numbers and rows have more to read."""
-        return Solution(**fields)
+        limits = self.limits if any(self.limits) else None
+        return Solution(**fields, limits=limits)
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))
@@ -286,7 +292,10 @@ class Solver:
 
     def _blame(self, failure: int, goal: Array) -> PluginError:
         """Return the error of a strategy whose result is not a number."""
-        bound = self.strategies[SLOT_ORDER[failure - FAILED]]
+        if failure == FAILED + len(SLOT_ORDER):
+            bound = next(limit for limit in self.limits if limit is not None)
+        else:
+            bound = self.strategies[SLOT_ORDER[failure - FAILED]]
         return PluginError(
             f"its result for the goal {goal.tolist()} is not a finite number",
             bound.plugin.name,

@@ -16,6 +16,7 @@ from limbik.core.flatten2d import (
     flat_plane_body,
     flat_plane_options,
 )
+from limbik.core.jointlimits import refuse_limits
 from limbik.core.pole import Pole, goal_axes, rotor_frames, turned_poles
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
@@ -77,6 +78,7 @@ class Solver2D(Solver):
         if misfits:
             raise InputError(Fault(code, message, key) for key, code, message in misfits)
         check_joints(chain, settings, 0)
+        refuse_limits(chain, "the 2D solver")
 
     def _flatten(self) -> tuple[Any, ...]:
         chain, settings = self.chain, self.settings

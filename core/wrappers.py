@@ -62,6 +62,8 @@ def finish(
     base_rotation: Array,
     low: Array,
     high: Array,
+    limits: NDArray[np.int64],
+    limit_params: Array,
     reachable: int,
     params: Array,
     angles: Array,
@@ -79,6 +81,8 @@ def finish(
         base_rotation,
         low,
         high,
+        limits,
+        limit_params,
         reachable,
         rebuild(params),
         angles,
@@ -87,7 +91,12 @@ def finish(
     )
 
 
+def limit(angles: Array, params: Array, margin: Array) -> None:
+    """Enter a joint's limit."""
+    kernel(angles, rebuild(params), margin)
+
+
 TEMPLATES: dict[str, Any] = {
     template.__name__: template
-    for template in (initial_bend, bend_vector, root_control, bank_suppression, finish)
+    for template in (initial_bend, bend_vector, root_control, bank_suppression, finish, limit)
 }

@@ -51,7 +51,8 @@ def ccd_round(
         target = unit(rotate_back(parent, subtract(goal, origin)))
         if not has_direction(operating) or not has_direction(target):
             continue
-        if turn_joint(joint, operating, target, strength, True, pose, options, plugs):
+        share = strength * options.compliance[joint]
+        if turn_joint(joint, operating, target, share, True, pose, options, plugs):
             moved = True
             end = add(origin, rotate(parent, rotate(matrix(pose.relative, joint), local)))
     if moved:

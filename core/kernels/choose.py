@@ -14,6 +14,7 @@ from limbik.core.jit import kernel
 from limbik.core.kernels.finish import end_solve
 from limbik.core.kernels.frames import clamp_angles, place_from, set_angles
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.limit import margin
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -138,6 +139,8 @@ def reference(joint: int, body: Body, options: Options, memory: Array) -> Vector
 def _middle(joint: int, pose: Pose) -> Vector:
     """Return a joint's angles in the middles of its ranges, those of free axes as found."""
     found = vector(pose.kept[FOUND], joint)
+    if pose.limits[joint] != 0:
+        return 0.0, 0.0, 0.0
     low, high = vector(pose.low, joint), vector(pose.high, joint)
     return (
         0.5 * (low[0] + high[0]) if high[0] < inf else found[0],
@@ -162,6 +165,8 @@ def _score(options: Options, pose: Pose) -> float:
             apart = rotation_vector(multiply(transposed(wanted), matrix(pose.relative, joint)))
             total += weight * dot(apart, apart)
             continue
+        if weight > 0.0 and pose.limits[joint] != 0:
+            least = min(least, margin(joint, vector(pose.angles, joint), pose) / weight)
         for axis in range(3):
             low, high = pose.low[joint, axis], pose.high[joint, axis]
             if weight > 0.0 and high < inf and high > low:

@@ -6,6 +6,7 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
+from limbik.core.kernels.limit import inside
 from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
@@ -23,6 +24,7 @@ from limbik.core.kernels.rotation import (
     wrap_angle,
 )
 from limbik.core.rotation import Array
+from limbik.core.slots import MAX_PARAMS
 
 
 @entry
@@ -42,6 +44,8 @@ def new_pose(n: int) -> Pose:
         np.zeros(n, np.int64),
         np.zeros((3, n)),
         np.zeros((n, 3)),
+        np.zeros(n, np.int64),
+        np.zeros((n, MAX_PARAMS)),
         np.zeros((8, 3)),
         np.zeros((3, n, 3)),
         np.zeros((n, 32)),
@@ -84,7 +88,9 @@ def place_from(first: int, body: Body, pose: Pose) -> None:
 
 @kernel
 def set_angles(joint: int, angles: Vector, pose: Pose) -> None:
-    """Give a joint angles [rad] and the rotation they make."""
+    """Give a joint angles [rad], pulled into its own limit, and the rotation they make."""
+    if pose.limits[joint] != 0:
+        angles = inside(joint, angles, pose)
     store_vector(angles, pose.angles, joint)
     store_matrix(hpb_to_matrix(angles), pose.relative, joint)
 

@@ -5,9 +5,13 @@ NamedTuples of arrays and numbers cost nothing in compiled code and keep their n
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from limbik.core.rotation import Array
 
 Vector = tuple[float, float, float]
+Counts = NDArray[np.int64]
 
 
 class Body(NamedTuple):
@@ -72,6 +76,10 @@ class Options(NamedTuple):
     """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
     soft_zone: float
     """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
+    compliance: Array
+    """Share of its turn each joint makes in CCD: 1 less its stiffness, (n,)."""
+    limit_ease: float
+    """Width of the zone before a limit in which CCD slows a joint [rad]; 0 = off."""
     choose: int
     """How to choose among solutions: 0 = take the first, see `limbik.core.kernels.choose`."""
     candidates: int
@@ -96,6 +104,10 @@ class Plugs(NamedTuple):
     finish: int
     params: Array
     """One row a slot in the order above, (5, 16)."""
+    limits: Counts
+    """Addresses of the joints' own limits, (n,); 0 = none, negative = the mirror image of one."""
+    limit_params: Array
+    """(n, 16)"""
 
 
 class Pose(NamedTuple):
@@ -127,6 +139,10 @@ class Pose(NamedTuple):
     """Bone lengths from the root over root-to-end length, weights, angles [rad], (3, n)."""
     directions: Array
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
+    limits: Counts
+    """As in `Plugs`, (n,)."""
+    limit_params: Array
+    """(n, 16)"""
     scratch: Array
     """Arguments of strategies, (8, 3)."""
     kept: Array

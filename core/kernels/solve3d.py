@@ -19,6 +19,8 @@ from limbik.core.kernels.frames import (
     set_angles,
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
+from limbik.core.kernels.limit import FAILED as LIMIT_FAILED
+from limbik.core.kernels.limit import load_limits
 from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import (
@@ -89,6 +91,7 @@ def solve_goals(
     """
     n = body.offsets.shape[0]
     pose = new_pose(n)
+    load_limits(plugs, pose)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
@@ -129,7 +132,7 @@ def _solve(
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
     bend_world = (0.0, 0.0, 0.0)
-    pose.verdict[0] = 0.0
+    pose.verdict[0], pose.scratch[LIMIT_FAILED, 0] = 0.0, 0.0
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
@@ -363,7 +366,7 @@ def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
             angles = mixed(joint, angles, mix, body, fk, pose)
         angles = wrap_free(angles, vector(body.high, joint))
         set_angles(joint, angles, pose)
-        store_vector(angles, memory, joint + 4)
+        store_vector(vector(pose.angles, joint), memory, joint + 4)
     place_from(0, body, pose)
     memory[3, 0] = 1.0
 
@@ -379,6 +382,8 @@ def _write_numbers(
     numbers: Array,
 ) -> None:
     """Write iterations, distance, status and bend direction of a solve into numbers (7,)."""
+    if pose.scratch[LIMIT_FAILED, 0] != 0.0:
+        failed = FAILED + 5
     distance = distance_to(goal, pose)
     numbers[ITERATIONS] = iterations
     numbers[DISTANCE] = distance

@@ -7,7 +7,9 @@ vector v of the joint stands at `M(angles) v` there and is to move to a wanted d
 from math import inf, pi
 
 from limbik.core.jit import kernel
+from limbik.core.kernels.ease import eased
 from limbik.core.kernels.layout import Options, Plugs, Pose
+from limbik.core.kernels.limit import inside, turn_inside
 from limbik.core.kernels.re_aim import re_aim
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
@@ -77,7 +79,11 @@ def turn_joint(
     locked = options.bank_lock and joint > options.root
     watched = locked or plugs.bank_suppression != 0
     if pose.free[joint] and not watched:
-        store_matrix(multiply(turn_about(axis, angle), relative), pose.relative, joint)
+        wanted = multiply(turn_about(axis, angle), relative)
+        if pose.limits[joint] != 0:
+            zone = options.limit_ease if in_ccd else 0.0
+            return turn_inside(joint, operating, target, wanted, zone, pose)
+        store_matrix(wanted, pose.relative, joint)
         return True
     if (
         pose.hinged[joint]
@@ -89,6 +95,8 @@ def turn_joint(
         before = vector(pose.angles, joint)
         low, high = vector(pose.low, joint), vector(pose.high, joint)
         angles = re_aim(before, low, high, operating, turned(current, axis, angle))
+        if in_ccd and options.limit_ease > 0.0:
+            angles = eased(before, angles, low, high, options.limit_ease)
         return _move(joint, before, angles, pose)
     return _turn_limited(
         joint, operating, target, relative, axis, angle, locked, in_ccd, pose, options, plugs
@@ -110,6 +118,8 @@ def _replacement_axis(relative: Matrix, operating: Vector) -> Vector:
 @kernel
 def _move(joint: int, before: Vector, angles: Vector, pose: Pose) -> bool:
     """Give a joint new angles; return whether they differ from those before."""
+    if pose.limits[joint] != 0:
+        angles = inside(joint, angles, pose)
     change = subtract(angles, before)
     store_vector(angles, pose.angles, joint)
     store_matrix(hpb_to_matrix(angles), pose.relative, joint)
@@ -170,6 +180,8 @@ def _turn_limited(
         )
         aim = turned(rotate(relative, operating), axis, angle)
         cut = re_aim(start, low, high, operating, aim)
+    if in_ccd and options.limit_ease > 0.0:
+        cut = eased(before, cut, low, high, options.limit_ease)
     return _move(joint, before, cut, pose)
 
 

@@ -5,19 +5,40 @@ side of the problem), axes at a limit left out while the step would push them fu
 """
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.rotation import Vector, clamp, dot, norm, subtract
+from limbik.core.kernels.rotation import (
+    Vector,
+    add,
+    clamp,
+    dot,
+    hpb_to_matrix,
+    matrix_to_hpb,
+    multiply,
+    norm,
+    rotation_vector,
+    scale,
+    subtract,
+    transposed,
+    unit,
+)
 from limbik.core.rotation import Array
 from limbik.plugins.finish.linkage import (
     ACTIVE,
     ANGLES,
+    HEADING,
     TRIAL,
     Linkage,
+    axis_of,
     copy_columns,
     end_at,
     motion,
+    pulled,
+    turned_by,
+    write,
 )
 
 LONGEST_STEP = 0.7  # [rad]; a longer step leaves the range where the first order says something
+PROBE = 1e-6  # [rad]; the part of a step that shows whether a limit of its own bars it
+PUSHED = 1e-3  # share of the probe; a joint pulled back by more is at its limit
 LEAST_GAIN = 1e-9  # share of the error; a step that removes less ends the descent
 
 
@@ -45,7 +66,8 @@ def descend(goal: Vector, tolerance: float, steps: int, chain: Linkage, scratch:
         _mark_active(chain, scratch)
         for _ in range(3 * chain.offsets.shape[0]):
             weights = _weights(error, end, damping, chain, scratch)
-            if not _leave_out_blocked(weights, end, chain, scratch):
+            blocked = _leave_out_blocked(weights, end, chain, scratch)
+            if not _bar_ways_out(weights, end, chain, scratch) and not blocked:
                 break
         if not _try_step(weights, end, chain, scratch):
             break
@@ -118,17 +140,90 @@ def _leave_out_blocked(weights: Vector, end: Vector, chain: Linkage, scratch: Ar
     """Take out the axes at a limit that the step would push further; return whether any was."""
     found = False
     for joint in range(chain.offsets.shape[0]):
+        if chain.limits[joint] != 0:
+            continue
         for axis in range(3):
             if scratch[joint, ACTIVE + axis] == 0.0:
                 continue
-            step = dot(motion(joint, axis, end, scratch), weights)
+            turn = dot(motion(joint, axis, end, scratch), weights)
             angle = scratch[joint, ANGLES + axis]
-            if (step < 0.0 and angle <= chain.low[joint, axis]) or (
-                step > 0.0 and angle >= chain.high[joint, axis]
+            if (turn < 0.0 and angle <= chain.low[joint, axis]) or (
+                turn > 0.0 and angle >= chain.high[joint, axis]
             ):
                 scratch[joint, ACTIVE + axis] = 0.0
                 found = True
     return found
+
+
+@kernel
+def _bar_ways_out(weights: Vector, end: Vector, chain: Linkage, scratch: Array) -> bool:
+    """Take the way out of their own limits from joints that the step would push there.
+
+    A tiny part of the step shows whether it is pulled back. If so, the joint's axes lose their part
+    along the limit's gradient, so that it still slides along the limit.
+
+    Returns:
+        Whether any joint was at its limit.
+    """
+    found = False
+    for joint in range(chain.offsets.shape[0]):
+        if chain.limits[joint] == 0 or scratch[joint, ACTIVE] == 0.0:
+            continue
+        step = unit(_turn_of(joint, weights, end, scratch))
+        pull = _pull(step, joint, chain, scratch)
+        if norm(pull) > PUSHED:
+            way = unit(pull)
+            gradient = (
+                _outward(0, way, joint, chain, scratch),
+                _outward(1, way, joint, chain, scratch),
+                _outward(2, way, joint, chain, scratch),
+            )
+            _flatten_axes(unit(gradient), joint, scratch)
+            found = True
+    return found
+
+
+@kernel
+def _pull(way: Vector, joint: int, chain: Linkage, scratch: Array) -> Vector:
+    """Return the turn by which a limit pulls back a tiny turn, over the size of that turn."""
+    probed = turned_by(scale(way, PROBE), joint, scratch)
+    angles = matrix_to_hpb(probed, scratch[joint, ANGLES + 2])
+    back = hpb_to_matrix(pulled(joint, angles, chain, scratch))
+    return scale(rotation_vector(multiply(back, transposed(probed))), 1.0 / PROBE)
+
+
+@kernel
+def _outward(axis: int, way: Vector, joint: int, chain: Linkage, scratch: Array) -> float:
+    """Return how far a turn about an axis leads out of the limit that pulls along a direction.
+
+    A limit may pull aslant to its surface; this is its gradient, to which sliding is square.
+    """
+    turn = (1.0 if axis == 0 else 0.0, 1.0 if axis == 1 else 0.0, 1.0 if axis == 2 else 0.0)
+    out = dot(_pull(turn, joint, chain, scratch), way)
+    if abs(out) > PUSHED:
+        return out
+    return -dot(_pull(scale(turn, -1.0), joint, chain, scratch), way)
+
+
+@kernel
+def _flatten_axes(way: Vector, joint: int, scratch: Array) -> None:
+    """Take the part along a direction, given in the axes, out of a joint's axes."""
+    along = (0.0, 0.0, 0.0)
+    for axis in range(3):
+        along = add(along, scale(axis_of(joint, axis, scratch), way[axis]))
+    for axis in range(3):
+        left = subtract(axis_of(joint, axis, scratch), scale(along, way[axis]))
+        write(left, scratch, joint, HEADING + 3 * axis)
+
+
+@kernel
+def _turn_of(joint: int, weights: Vector, end: Vector, scratch: Array) -> Vector:
+    """Return the step of a joint's three axes [rad]."""
+    return (
+        dot(motion(joint, 0, end, scratch), weights),
+        dot(motion(joint, 1, end, scratch), weights),
+        dot(motion(joint, 2, end, scratch), weights),
+    )
 
 
 @kernel
@@ -144,6 +239,11 @@ def _try_step(weights: Vector, end: Vector, chain: Linkage, scratch: Array) -> b
         return False
     share = min(1.0, LONGEST_STEP / longest)
     for joint in range(chain.offsets.shape[0]):
+        if chain.limits[joint] != 0 and scratch[joint, ACTIVE] != 0.0:
+            turn = scale(_turn_of(joint, weights, end, scratch), share)
+            found = matrix_to_hpb(turned_by(turn, joint, scratch), scratch[joint, ANGLES + 2])
+            write(pulled(joint, found, chain, scratch), scratch, joint, TRIAL)
+            continue
         for axis in range(3):
             angle = scratch[joint, ANGLES + axis]
             if scratch[joint, ACTIVE + axis] != 0.0:

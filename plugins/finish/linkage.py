@@ -7,8 +7,13 @@ joint, in the columns named here.
 from math import cos, sin
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from limbik.core.jit import kernel
+from limbik.core.kernels.limit import pulled_inside
 from limbik.core.kernels.rotation import (
+    Matrix,
     Vector,
     add,
     column,
@@ -19,6 +24,7 @@ from limbik.core.kernels.rotation import (
     rotate,
     scale,
     subtract,
+    turn_by,
     vector,
 )
 from limbik.core.rotation import Array
@@ -26,9 +32,10 @@ from limbik.core.rotation import Array
 # First columns of the scratch rows, three numbers each.
 ANGLES, TRIAL, BEST, START = 0, 3, 6, 9
 POSITION, HEADING, PITCH, BANK = 12, 15, 18, 21
-MOVES = 24
+TURN = 24
 ACTIVE = 27
-WIDTH = 30
+MARGIN = 30
+WIDTH = 31
 
 
 class Linkage(NamedTuple):
@@ -46,6 +53,10 @@ class Linkage(NamedTuple):
     """(n, 3) [rad]"""
     high: Array
     """(n, 3) [rad]"""
+    limits: NDArray[np.int64]
+    """Joints' own limits, (n,); 0 = none."""
+    limit_params: Array
+    """(n, 16)"""
 
 
 @kernel
@@ -72,7 +83,9 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
     """Place the chain at the angles of a column and return its end.
 
     Positions and the three turning axes of every joint are written too. An axis is signed so that
-    a growing angle moves a point r away from the joint by axis x r.
+    a growing angle moves a point r away from the joint by axis x r. A joint with a limit of its own
+    turns about the axes of its zero pose, by rotation vectors: there such a limit looks alike from
+    all sides.
 
     Args:
         angles: First column of the angles [rad].
@@ -91,11 +104,33 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
         hpb = read(scratch, joint, angles)
         frame = multiply(parent, hpb_to_matrix(hpb))
         write(origin, scratch, joint, POSITION)
+        if chain.limits[joint] != 0:
+            for axis in range(3):
+                write(column(parent, axis), scratch, joint, HEADING + 3 * axis)
+            continue
         # The elementary rotations have the sense opposite to the right-hand rule.
         write(scale(column(parent, 1), -1.0), scratch, joint, HEADING)
         write(scale(rotate(parent, (cos(hpb[0]), 0.0, sin(hpb[0]))), -1.0), scratch, joint, PITCH)
         write(scale(column(frame, 2), -1.0), scratch, joint, BANK)
     return origin
+
+
+@kernel
+def pulled(joint: int, angles: Vector, chain: Linkage, scratch: Array) -> Vector:
+    """Return angles pulled into a joint's own limit, which it must have."""
+    return pulled_inside(
+        chain.limits[joint],
+        angles,
+        chain.limit_params[joint],
+        scratch[joint, TURN : TURN + 3],
+        scratch[joint, MARGIN : MARGIN + 1],
+    )
+
+
+@kernel
+def turned_by(step: Vector, joint: int, scratch: Array) -> Matrix:
+    """Return the rotation of a joint's angles turned on by a rotation vector [rad]."""
+    return multiply(turn_by(step), hpb_to_matrix(read(scratch, joint, ANGLES)))
 
 
 @kernel

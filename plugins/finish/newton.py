@@ -19,10 +19,20 @@ from limbik.core.jit import kernel
 from limbik.core.kernels.rotation import Vector, wrap_angle
 from limbik.core.strategy import Strategy
 from limbik.plugins.finish.descent import descend
-from limbik.plugins.finish.linkage import ANGLES, BEST, START, Linkage, copy_columns, write
+from limbik.plugins.finish.linkage import (
+    ANGLES,
+    BEST,
+    START,
+    Linkage,
+    copy_columns,
+    pulled,
+    read,
+    write,
+)
 from limbik.plugins.finish.sweep import sweep
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 
 FULL_EFFORT_JOINTS = 8  # chains up to this long get all retries
@@ -50,6 +60,8 @@ def newton(
     base_rotation: Array,
     low: Array,
     high: Array,
+    limits: Counts,
+    limit_params: Array,
     reachable: int,
     params: Newton,
     angles: Array,
@@ -57,7 +69,8 @@ def newton(
     verdict: Array,
 ) -> None:
     """End a solve at its goal within the limits, or as near as there is a way to."""
-    chain = Linkage(offsets, frozen, base_position, base_rotation, low, high)
+    body = (offsets, frozen, base_position, base_rotation, low, high)
+    chain = Linkage(*body, limits, limit_params)
     point = (goal[0], goal[1], goal[2])
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):
@@ -135,6 +148,10 @@ def _start(attempt: int, chain: Linkage, scratch: Array) -> None:
             elif attempt > 2:
                 angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
             scratch[joint, ANGLES + axis] = angle
+        if chain.limits[joint] != 0:
+            write(
+                pulled(joint, read(scratch, joint, ANGLES), chain, scratch), scratch, joint, ANGLES
+            )
 
 
 @hookimpl

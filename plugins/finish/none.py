@@ -9,6 +9,7 @@ from limbik.core.hooks import hookimpl
 from limbik.core.strategy import NoParams, Strategy
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 
 def none(
@@ -21,6 +22,8 @@ def none(
     base_rotation: Array,
     low: Array,
     high: Array,
+    limits: Counts,
+    limit_params: Array,
     reachable: int,
     params: NoParams,
     angles: Array,

@@ -31,6 +31,8 @@ def sweep(goal: Vector, chain: Linkage, scratch: Array) -> None:
     """
     end = end_at(ANGLES, chain, scratch)
     for joint in range(chain.offsets.shape[0] - 1, -1, -1):
+        if chain.limits[joint] != 0:
+            continue  # the descent turns it
         origin = read(scratch, joint, POSITION)
         reach, target = subtract(end, origin), subtract(goal, origin)
         for axis in range(2, -1, -1):
