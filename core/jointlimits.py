@@ -10,8 +10,8 @@ from limbik.core.errors import ChainError, InputError
 from limbik.core.kernels.layout import Counts
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.settings import Settings
-from limbik.core.slots import LIMIT, MAX_PARAMS, PASSED_OVER
+from limbik.core.settings import Settings, narrowing
+from limbik.core.slots import LIMIT, MAX_PARAMS
 from limbik.core.strategy import flatten, unflatten
 
 Limits = tuple[Bound | None, ...]
@@ -25,13 +25,9 @@ def bound_limits(chain: Chain, settings: Settings, registry: Registry) -> Limits
             which such a joint has not.
     """
     named = [joint.name for joint in chain.joints if joint.limit is not None]
-    for option, is_on in {
-        "root_control": settings.root_control not in (PASSED_OVER, {"use": PASSED_OVER}),
-        "bank_lock": settings.bank_lock,
-    }.items():
-        if named and is_on:
-            message = f"{option} narrows ranges, but a joint with a limit of its own has none"
-            raise ChainError(message, named[0])
+    for option in narrowing(settings) if named else ():
+        message = f"{option} narrows ranges, but a joint with a limit of its own has none"
+        raise ChainError(message, named[0])
     found: list[Bound | None] = []
     for joint in chain.joints:
         try:

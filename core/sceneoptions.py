@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from limbik.core.errors import Fault
 from limbik.core.scenemodel import CsvModel, SceneModel
 from limbik.core.sceneplane import solver_faults
-from limbik.core.settings import joint_tables
+from limbik.core.settings import joint_tables, narrowing
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath
 
@@ -14,6 +14,7 @@ def option_faults(names: Sequence[str], model: SceneModel, document: Document) -
     """Check the options that only make sense together with a chain of these joints."""
     yield from solver_faults(model, document)
     yield from _end_faults(model, document)
+    yield from _limit_faults(model, document)
     options, count = model.options, len(names)
     if count < 2:
         return
@@ -39,6 +40,22 @@ def unknown_joints(
             hint = near_match(name, list(names)) or f"known: {', '.join(names[:12])}"
             message = f"no joint is called '{name}'"
             yield document.fault("unknown-joint", message, (*path, name), hint=hint, at_key=True)
+
+
+def _limit_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+    """A joint with a limit of its own fits neither the 2D solver nor options that narrow ranges."""
+    owners = [number for number, joint in enumerate(model.chain.joints) if joint.limit is not None]
+    if not owners:
+        return
+    if model.solver == "2d":
+        for number in owners:
+            message = "belongs to the 3D solver; give the joint a 'planar' range"
+            place: KeyPath = ("chain", "joints", number, "limit")
+            yield document.fault("solver", message, place, at_key=True)
+    for option in narrowing(model.options):
+        name = model.chain.joints[owners[0]].name
+        message = f"narrows ranges, but '{name}' has a limit of its own in place of ranges"
+        yield document.fault("limit", message, ("options", option), at_key=True)
 
 
 def _end_faults(model: SceneModel, document: Document) -> Iterator[Fault]:

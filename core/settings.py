@@ -194,6 +194,14 @@ class Settings(Model):
         return self
 
 
+def narrowing(settings: Settings) -> Iterator[str]:
+    """Give the options that narrow ranges, which joints with limits of their own have not."""
+    if settings.root_control not in ("none", {"use": "none"}):
+        yield "root_control"
+    if settings.bank_lock:
+        yield "bank_lock"
+
+
 def joint_tables(settings: Settings) -> Iterator[tuple[tuple[str, ...], Mapping[str, object]]]:
     """Give key path and content of each option that names joints."""
     if settings.choose is not None:
