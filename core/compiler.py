@@ -166,18 +166,31 @@ def _compiled(function: Any) -> Any:
     """Compile a plain function or an entry, and all plain functions it calls, once.
 
     limbik's kernels do without numba's memory runtime. None gets wrappers for calls from outside,
-    which took a third of the time to compile.
+    which took a third of the time to compile. One that takes a record of arrays becomes part of
+    its caller: a call would copy every field of every array, which took a third of a solve.
     """
     if isinstance(function, Late):
         function = function.target()
     plain = cast(FunctionType, function.function if isinstance(function, Entry) else function)
     if id(plain) not in _COMPILED:
         copy, fill = sources.rebuilt(plain, "kernel", _compiled)
-        runtime = isinstance(function, Entry) or not sources.is_own(plain)
-        inner = _njit(_nrt=runtime, no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)
+        own = sources.is_own(plain)
+        inner = _njit(
+            _nrt=isinstance(function, Entry) or not own,
+            forceinline=own and _takes_record(plain),
+            no_cpython_wrapper=True,
+            no_cfunc_wrapper=True,
+            **_OPTIONS,
+        )
         _COMPILED[id(plain)] = (plain, inner(copy))
         fill()
     return _COMPILED[id(plain)][1]
+
+
+def _takes_record(function: FunctionType) -> bool:
+    """Whether a function has a NamedTuple among its arguments, by its annotations."""
+    hints = (hint for name, hint in function.__annotations__.items() if name != "return")
+    return any(hasattr(hint, "_fields") for hint in hints)
 
 
 def _number_type(field: Parameter) -> Any:

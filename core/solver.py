@@ -105,14 +105,20 @@ class Solver:
 
         Every call passes arrays of the same types, made or checked here: they are looked at once.
         """
-        from limbik.core.kernels.solve3d import solve_goals
-
-        if not isinstance(solve_goals, Entry):
-            return solve_goals
+        solve_rows = self._entry()
+        if not isinstance(solve_rows, Entry):
+            return solve_rows
         out = Arrays(1, len(self.chain), 0, self._columns)
-        return solve_goals.direct(
+        return solve_rows.direct(
             *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
+
+    @staticmethod
+    def _entry() -> Callable[..., int]:
+        """The solve of many rows, not compiled yet."""
+        from limbik.core.kernels.solve3d import solve_goals
+
+        return solve_goals
 
     def solve(
         self,

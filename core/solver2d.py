@@ -93,8 +93,8 @@ class Solver2D(Solver):
         found: Planar = self._fixed[2]
         return found
 
-    @cached_property
-    def _kernel(self) -> Callable[..., int]:
+    @staticmethod
+    def _entry() -> Callable[..., int]:
         from limbik.core.kernels.solve2d import solve_plane_goals
 
         return solve_plane_goals

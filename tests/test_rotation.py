@@ -170,7 +170,8 @@ def test_re_aim_stays_in_the_limits_and_never_makes_the_angle_larger(
     low, high = tuple(pair[0] for pair in pairs), tuple(pair[1] for pair in pairs)
     angles = tuple(data.draw(st.floats(*pair)) for pair in pairs)
     operating, aim = plain(kernels.unit)(v), plain(kernels.unit)(w)
-    found = plain(re_aim.re_aim)(angles, low, high, operating, aim)
+    found, turn = plain(re_aim.re_aim)(angles, low, high, operating, aim)
+    np.testing.assert_allclose(turn, hpb_to_matrix(found), atol=1e-15)
     before = np.array(aim) @ hpb_to_matrix(angles) @ operating
     after = np.array(aim) @ hpb_to_matrix(found) @ operating
     assert after >= before - 1e-12

@@ -75,27 +75,23 @@ def choose_pose(
     _keep(BEST, pose)
     _set_wanted(body, options, memory, pose)
     best = _score(options, pose)
-    for number in range(options.candidates):
-        _start(number, goal, body, options, memory, pose)
-        if not end_solve(goal, body, options, plugs, pose):
-            return False
-        score = _score(options, pose)
-        if _gap(goal, pose) < options.tolerance and score < best - BETTER:
-            best = score
-            _keep(BEST, pose)
     share = 0.5
-    for _ in range(PULLS):
-        _pull(share, options, pose)
+    for number in range(options.candidates + PULLS):
+        pulls = number >= options.candidates
+        if pulls:
+            _pull(share, options, pose)
+        else:
+            _start(number, goal, body, options, memory, pose)
         if not end_solve(goal, body, options, plugs, pose):
             return False
         score = _score(options, pose)
         if _gap(goal, pose) < options.tolerance and score < best - BETTER:
             best = score
             _keep(BEST, pose)
-        else:
+        elif pulls:
             share *= 0.5
-        if share < LEAST_PULL:
-            break
+            if share < LEAST_PULL:
+                break
     for joint in range(body.offsets.shape[0]):
         set_angles(joint, vector(pose.kept[BEST], joint), pose)
     place_from(0, body, pose)

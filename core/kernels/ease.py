@@ -36,7 +36,7 @@ def eased(before: Vector, after: Vector, low: Vector, high: Vector, zone: float)
         after: HPB inside low..high [rad].
         low: [rad], -inf where free.
         high: [rad], inf where free.
-        zone: Width of the zones [rad]; in a narrow range at most half of it.
+        zone: Width of the zones [rad]; in a narrow range at most half of it. 0 = off.
     """
     return (
         _eased_axis(before[0], after[0], low[0], high[0], zone),
@@ -47,7 +47,7 @@ def eased(before: Vector, after: Vector, low: Vector, high: Vector, zone: float)
 
 @kernel
 def _eased_axis(before: float, after: float, low: float, high: float, zone: float) -> float:
-    if not high < inf or not high > low or not low <= before <= high:
+    if not zone > 0.0 or not high < inf or not high > low or not low <= before <= high:
         return after
     width = min(zone, 0.5 * (high - low))
     if after > before:

@@ -4,13 +4,15 @@ A vector is a tuple of three floats, a matrix a tuple of three rows. Left-handed
 as in `limbik.core.rotation`. `vector`, `matrix` read rows of arrays, `store_` functions write them.
 """
 
-from math import atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt
 
 from limbik.core.jit import kernel
 from limbik.core.rotation import Array
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
+Trig = tuple[float, float, float]
+"""An angle [rad], its sine and its cosine."""
 
 ZERO_TURN = 1e-9  # [rad]; a smaller turn is none (DECISIONS, "zero tolerance")
 ZERO_LENGTH = 1e-12  # a vector this short has no direction
@@ -63,11 +65,23 @@ def clamp(value: float, low: float, high: float) -> float:
 
 
 @kernel
+def trig(angle: float) -> Trig:
+    """Return an angle [rad] with its sine and cosine."""
+    return angle, sin(angle), cos(angle)
+
+
+@kernel
 def hpb_to_matrix(hpb: Vector) -> Matrix:
     """Return RY(heading) RX(pitch) RZ(bank) of angles [rad]."""
-    sh, ch = sin(hpb[0]), cos(hpb[0])
-    sp, cp = sin(hpb[1]), cos(hpb[1])
-    sb, cb = sin(hpb[2]), cos(hpb[2])
+    return trig_to_matrix(trig(hpb[0]), trig(hpb[1]), trig(hpb[2]))
+
+
+@kernel
+def trig_to_matrix(heading: Trig, pitch: Trig, bank: Trig) -> Matrix:
+    """Return RY(heading) RX(pitch) RZ(bank)."""
+    _, sh, ch = heading
+    _, sp, cp = pitch
+    _, sb, cb = bank
     return (
         (ch * cb - sh * sp * sb, ch * sb + sh * sp * cb, -sh * cp),
         (-cp * sb, cp * cb, sp),
@@ -81,7 +95,7 @@ def matrix_to_hpb(m: Matrix, bank: float) -> Vector:
 
     At a pitch of ±90° heading and bank share one axis; `bank` [rad] is kept there (3D A-62).
     """
-    level = hypot(m[0][2], m[2][2])
+    level = sqrt(m[0][2] * m[0][2] + m[2][2] * m[2][2])
     pitch = atan2(m[1][2], level)
     if level > 1e-9:
         return atan2(-m[0][2], m[2][2]), pitch, atan2(-m[1][0], m[1][1])
@@ -249,8 +263,13 @@ def turned(v: Vector, axis: Vector, angle: float) -> Vector:
 
 @kernel
 def turn_about(axis: Vector, angle: float) -> Matrix:
-    """Return the matrix that turns vectors as `turned` does."""
-    s, c = sin(angle), cos(angle)
+    """Return the matrix that turns vectors about a unit axis as `turned` does."""
+    return axis_trig_to_matrix(axis, sin(angle), cos(angle))
+
+
+@kernel
+def axis_trig_to_matrix(axis: Vector, s: float, c: float) -> Matrix:
+    """Return the matrix of a turn about a unit axis by the angle of a sine and a cosine."""
     x, y, z = axis
     d = 1.0 - c
     return (

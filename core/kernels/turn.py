@@ -4,7 +4,7 @@ All directions here are in the joint's parent frame (parent world x frozen): the
 vector v of the joint stands at `M(angles) v` there and is to move to a wanted direction.
 """
 
-from math import inf, pi
+from math import atan2, cos, inf, pi, sin, sqrt
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.ease import eased
@@ -17,9 +17,10 @@ from limbik.core.kernels.rotation import (
     Vector,
     across,
     add,
-    angle_between,
+    axis_trig_to_matrix,
     clamp,
     cross,
+    dot,
     has_direction,
     hpb_to_matrix,
     matrix,
@@ -27,14 +28,13 @@ from limbik.core.kernels.rotation import (
     multiply,
     near,
     nearest_form,
+    norm,
     other_form,
     rotate,
     rotate_back,
     store_matrix,
     store_vector,
     subtract,
-    turn_about,
-    turned,
     unit,
     vector,
     wrap_angle,
@@ -70,18 +70,27 @@ def turn_joint(
     """
     relative = matrix(pose.relative, joint)
     current = rotate(relative, operating)
-    angle = angle_between(current, target) * strength
-    if not angle > ZERO_TURN:
+    side = cross(current, target)
+    s, c = norm(side), dot(current, target)
+    if strength < 1.0:
+        angle = atan2(s, c) * strength
+        s, c = sin(angle), cos(angle)
+    else:
+        # Not quite unit vectors would make the turn scale, and many turns scale without bound.
+        size = sqrt(s * s + c * c)
+        s, c = s / size, c / size
+    if not (s > ZERO_TURN or c < 0.0):
         return False
-    axis = unit(cross(current, target))
+    axis = unit(side)
     if not has_direction(axis):
         axis = _replacement_axis(relative, operating)
+    aim = target if strength >= 1.0 else rotate(axis_trig_to_matrix(axis, s, c), current)
+    zone = options.limit_ease if in_ccd else 0.0
     locked = options.bank_lock and joint > options.root
     watched = locked or plugs.bank_suppression != 0
     if pose.free[joint] and not watched:
-        wanted = multiply(turn_about(axis, angle), relative)
+        wanted = multiply(axis_trig_to_matrix(axis, s, c), relative)
         if pose.limits[joint] != 0:
-            zone = options.limit_ease if in_ccd else 0.0
             return turn_inside(joint, operating, target, wanted, zone, pose)
         store_matrix(wanted, pose.relative, joint)
         return True
@@ -94,12 +103,11 @@ def turn_joint(
         # A joint with a fixed axis can seldom make the whole turn: take the best it can at once.
         before = vector(pose.angles, joint)
         low, high = vector(pose.low, joint), vector(pose.high, joint)
-        angles = re_aim(before, low, high, operating, turned(current, axis, angle))
-        if in_ccd and options.limit_ease > 0.0:
-            angles = eased(before, angles, low, high, options.limit_ease)
-        return _move(joint, before, angles, pose)
+        angles, turn = re_aim(before, low, high, operating, aim)
+        return _move(joint, before, angles, turn, zone, pose)
+    full = multiply(axis_trig_to_matrix(axis, s, c), relative)
     return _turn_limited(
-        joint, operating, target, relative, axis, angle, locked, in_ccd, pose, options, plugs
+        joint, operating, target, aim, relative, full, zone, locked, in_ccd, pose, options, plugs
     )
 
 
@@ -116,13 +124,22 @@ def _replacement_axis(relative: Matrix, operating: Vector) -> Vector:
 
 
 @kernel
-def _move(joint: int, before: Vector, angles: Vector, pose: Pose) -> bool:
-    """Give a joint new angles; return whether they differ from those before."""
-    if pose.limits[joint] != 0:
-        angles = inside(joint, angles, pose)
+def _move(
+    joint: int, before: Vector, angles: Vector, turn: Matrix, zone: float, pose: Pose
+) -> bool:
+    """Give a joint new angles and their rotation; return whether they differ from before.
+
+    Where there is a limit ease, of width `zone` [rad], less of the way is gone.
+    """
+    if zone > 0.0 or pose.limits[joint] != 0:
+        low, high = vector(pose.low, joint), vector(pose.high, joint)
+        angles = eased(before, angles, low, high, zone)
+        if pose.limits[joint] != 0:
+            angles = inside(joint, angles, pose)
+        turn = hpb_to_matrix(angles)
     change = subtract(angles, before)
     store_vector(angles, pose.angles, joint)
-    store_matrix(hpb_to_matrix(angles), pose.relative, joint)
+    store_matrix(turn, pose.relative, joint)
     return max(abs(change[0]), abs(change[1]), abs(change[2])) > ZERO_TURN
 
 
@@ -131,29 +148,48 @@ def _turn_limited(
     joint: int,
     operating: Vector,
     target: Vector,
+    aim: Vector,
     relative: Matrix,
-    axis: Vector,
-    angle: float,
+    full: Matrix,
+    zone: float,
     locked: bool,
     in_ccd: bool,
     pose: Pose,
     options: Options,
     plugs: Plugs,
 ) -> bool:
-    """Turn a joint whose angles matter: limits, bank lock or bank suppression."""
+    """Turn a joint whose angles matter: limits, bank lock or bank suppression.
+
+    Args:
+        joint: Index.
+        operating: Unit vector in the joint's frame.
+        target: Where it is to go, parent frame.
+        aim: Where this turn alone would bring it, parent frame.
+        relative: The joint's rotation now.
+        full: The rotation that the turn alone would make.
+        zone: Of the limit ease [rad]; 0 = off.
+        locked: Whether the bank stays as it is.
+        in_ccd: Whether a CCD round asks.
+        pose: Changed in place.
+        options: Of the solve.
+        plugs: Of the solve.
+
+    Returns:
+        Whether the joint moved.
+    """
     before = vector(pose.angles, joint)
     if pose.free[joint]:
         # A free joint's matrix is the truth; its angles may be old.
         before = nearest_form(matrix_to_hpb(relative, before[2]), before)
     low, high = vector(pose.low, joint), vector(pose.high, joint)
-    full = matrix_to_hpb(multiply(turn_about(axis, angle), relative), before[2])
+    asked = matrix_to_hpb(full, before[2])
     if low[1] >= -0.5 * pi and high[1] <= 0.5 * pi:
         # The form with |pitch| ≤ 90° is the only one that such limits can leave uncut.
-        wanted = _wrap_limited(near(full, before), low, high)
+        wanted = _wrap_limited(near(asked, before), low, high)
         if _cut(wanted, low, high) > ZERO_TURN:
-            wanted = _least_clamped_form(nearest_form(full, before), before, low, high)
+            wanted = _least_clamped_form(nearest_form(asked, before), before, low, high)
     else:
-        wanted = _least_clamped_form(nearest_form(full, before), before, low, high)
+        wanted = _least_clamped_form(nearest_form(asked, before), before, low, high)
     if locked:
         wanted = (wanted[0], wanted[1], before[2])
         low, high = (low[0], low[1], before[2]), (high[0], high[1], before[2])
@@ -170,7 +206,8 @@ def _turn_limited(
         clamp(wanted[1], low[1], high[1]),
         clamp(wanted[2], low[2], high[2]),
     )
-    exceeded = angle_gap(cut, wanted) > ZERO_TURN
+    gap = angle_gap(cut, wanted)
+    exceeded = gap > ZERO_TURN
     pose.violations[joint] = pose.violations[joint] + 1 if exceeded else 0
     if exceeded and not options.plain_clamp:
         start = (
@@ -178,11 +215,11 @@ def _turn_limited(
             clamp(before[1], low[1], high[1]),
             clamp(before[2], low[2], high[2]),
         )
-        aim = turned(rotate(relative, operating), axis, angle)
-        cut = re_aim(start, low, high, operating, aim)
-    if in_ccd and options.limit_ease > 0.0:
-        cut = eased(before, cut, low, high, options.limit_ease)
-    return _move(joint, before, cut, pose)
+        angles, turn = re_aim(start, low, high, operating, aim)
+        return _move(joint, before, angles, turn, zone, pose)
+    if gap == 0.0 and not locked and plugs.bank_suppression == 0:
+        return _move(joint, before, wanted, full, zone, pose)
+    return _move(joint, before, cut, hpb_to_matrix(cut), zone, pose)
 
 
 @kernel

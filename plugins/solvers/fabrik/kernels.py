@@ -137,7 +137,8 @@ def _turn(
     """Bring a vector of joint i's frame as near to a world direction as its limits let."""
     aim = rotate_back(matrix(pose.parents, i), way)
     low, high = vector(limb.low, i), vector(limb.high, i)
-    store_vector(re_aim(vector(pose.angles, i), low, high, operating, aim), pose.angles, i)
+    angles, _ = re_aim(vector(pose.angles, i), low, high, operating, aim)
+    store_vector(angles, pose.angles, i)
 
 
 @kernel

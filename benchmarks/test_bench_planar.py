@@ -1,6 +1,6 @@
 """Times of the 2D solver beside the 3D one on the same joints.
 
-pytest benchmarks/bench_planar.py --benchmark-enable --import-mode=importlib
+pytest benchmarks/test_bench_planar.py --benchmark-enable
 """
 
 from typing import Any
