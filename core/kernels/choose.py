@@ -38,6 +38,7 @@ from limbik.core.kernels.rotation import (
     vector,
     wrap_angle,
 )
+from limbik.core.kernels.trace import record
 from limbik.core.rotation import Array
 
 NEAREST, MARGIN = 1, 2  # `Options.choose`; 0 = off
@@ -51,12 +52,19 @@ FOUND, BEST, WANTED = 0, 1, 2
 
 
 @kernel
-def choose_pose(
-    goal: Vector, body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose
-) -> bool:
-    """Put the best of a goal's solutions in place of the one that was found.
+def end_and_choose(
+    goal: Vector,
+    body: Body,
+    options: Options,
+    plugs: Plugs,
+    memory: Array,
+    pose: Pose,
+    trace: Array,
+    stages: int,
+) -> tuple[bool, int]:
+    """Finish the pose CCD ended with; then, if asked to, put the best solution in its place.
 
-    Where the goal is not reached nothing changes.
+    Where the goal is not reached there is nothing to choose among.
 
     Args:
         goal: World [length].
@@ -64,28 +72,32 @@ def choose_pose(
         options: Of the solve.
         plugs: Of the solve.
         memory: Continuity, (n + 4, 3).
-        pose: After the finish; changed in place.
+        pose: After CCD; changed in place.
+        trace: OUT: a stage for the finish and one for the choice.
+        stages: Traced so far.
 
     Returns:
-        False where the finish gave something that is not finite.
+        Whether the finish gave finite numbers only, and the stages traced.
     """
-    if not _gap(goal, pose) < options.tolerance:
-        return True
-    _keep(FOUND, pose)
-    _keep(BEST, pose)
-    _set_wanted(body, options, memory, pose)
-    best = _score(options, pose)
-    share = 0.5
-    for number in range(options.candidates + PULLS):
+    best, share = inf, 0.5
+    candidates = options.candidates + PULLS if options.choose != 0 else 0
+    for number in range(-1, candidates):
         pulls = number >= options.candidates
         if pulls:
             _pull(share, options, pose)
-        else:
+        elif number >= 0:
             _start(number, goal, body, options, memory, pose)
         if not end_solve(goal, body, options, plugs, pose):
-            return False
+            return False, stages
+        reached = _gap(goal, pose) < options.tolerance
+        if number < 0:
+            stages = record(stages, pose, trace)
+            if options.choose == 0 or not reached:
+                return True, stages
+            _keep(FOUND, pose)
+            _set_wanted(body, options, memory, pose)
         score = _score(options, pose)
-        if _gap(goal, pose) < options.tolerance and score < best - BETTER:
+        if reached and score < best - BETTER:
             best = score
             _keep(BEST, pose)
         elif pulls:
@@ -95,7 +107,7 @@ def choose_pose(
     for joint in range(body.offsets.shape[0]):
         set_angles(joint, vector(pose.kept[BEST], joint), pose)
     place_from(0, body, pose)
-    return True
+    return True, record(stages, pose, trace)
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
-from limbik.core.kernels.limit import inside
+from limbik.core.kernels.limit import MARGIN, TURN, pulled_inside
 from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
@@ -90,7 +90,8 @@ def place_from(first: int, body: Body, pose: Pose) -> None:
 def set_angles(joint: int, angles: Vector, pose: Pose) -> None:
     """Give a joint angles [rad], pulled into its own limit, and the rotation they make."""
     if pose.limits[joint] != 0:
-        angles = inside(joint, angles, pose)
+        limits, params, work = pose.limits, pose.limit_params[joint], pose.scratch
+        angles = pulled_inside(limits[joint], angles, params, work[TURN], work[MARGIN])
     store_vector(angles, pose.angles, joint)
     store_matrix(hpb_to_matrix(angles), pose.relative, joint)
 

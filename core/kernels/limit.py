@@ -25,10 +25,11 @@ from limbik.core.kernels.rotation import (
     store_vector,
     transposed,
     turn_by,
+    vector,
 )
 from limbik.core.rotation import Array
 
-ANGLES, MARGIN, FAILED = 4, 5, 7  # rows of `Pose.scratch`
+TURN, MARGIN = 4, 5  # rows of `Pose.scratch`
 
 TRIES = 4  # sizes of a turn that are tried before a joint is left alone
 
@@ -69,16 +70,24 @@ def load_limits(plugs: Plugs, pose: Pose) -> None:
 @kernel
 def inside(joint: int, angles: Vector, pose: Pose) -> Vector:
     """Return angles pulled into a joint's own limit, which it must have."""
-    pulled = pulled_inside(
+    return pulled_inside(
         pose.limits[joint],
         angles,
         pose.limit_params[joint],
-        pose.scratch[ANGLES],
+        pose.scratch[TURN],
         pose.scratch[MARGIN],
     )
-    if isnan(pulled[0] + pulled[1] + pulled[2]):
-        pose.scratch[FAILED, 0] = 1.0
-    return pulled
+
+
+@kernel
+def limits_failed(pose: Pose) -> bool:
+    """Return whether a joint with a limit of its own has angles that are no numbers."""
+    failed = False
+    for joint in range(pose.angles.shape[0]):
+        angles = vector(pose.angles, joint)
+        if pose.limits[joint] != 0 and isnan(angles[0] + angles[1] + angles[2]):
+            failed = True
+    return failed
 
 
 @kernel

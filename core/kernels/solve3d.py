@@ -6,8 +6,8 @@ from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
 from limbik.core.kernels.bend_vector import find_bend_vector, usable
 from limbik.core.kernels.ccd import ccd_round
-from limbik.core.kernels.choose import choose_pose
-from limbik.core.kernels.finish import end_solve, status_of
+from limbik.core.kernels.choose import end_and_choose
+from limbik.core.kernels.finish import status_of
 from limbik.core.kernels.frames import (
     base_rotation,
     clamp_angles,
@@ -19,8 +19,7 @@ from limbik.core.kernels.frames import (
     set_angles,
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
-from limbik.core.kernels.limit import FAILED as LIMIT_FAILED
-from limbik.core.kernels.limit import load_limits
+from limbik.core.kernels.limit import limits_failed, load_limits
 from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import (
@@ -41,6 +40,7 @@ from limbik.core.kernels.rotation import (
     vector,
 )
 from limbik.core.kernels.soft import soft_distance, soft_goal
+from limbik.core.kernels.trace import record
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 from limbik.core.slots import call_root_control
@@ -132,11 +132,11 @@ def _solve(
 ) -> int:
     """Take one goal through all stages; return the number of stages traced."""
     bend_world = (0.0, 0.0, 0.0)
-    pose.verdict[0], pose.scratch[LIMIT_FAILED, 0] = 0.0, 0.0
+    pose.verdict[0] = 0.0
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
-    stages = _record(stages, pose, trace)
+    stages = record(stages, pose, trace)
     if failed == 0 and options.max_iterations > -2 and not options.full_fk:
         iterations = -1
         aim, distance = _aim_pose(goal, body, options, plugs, memory, pose)
@@ -149,7 +149,7 @@ def _solve(
             bend = Bend(aim, usable(found, aim, body, options, pose))
             if options.max_iterations == -1:
                 _twist_aim(bend, body, options, fk, pose)
-            stages = _record(stages, pose, trace)
+            stages = record(stages, pose, trace)
             pursued = soft_goal(goal, distance, options, pose)
             if options.max_iterations > -1:
                 nearer = soft_distance(distance, options.root_to_end, options.soft_zone)
@@ -157,18 +157,16 @@ def _solve(
                     bend_pose(bend, body, options, plugs, fk, pose)
                     if options.from_current and options.max_iterations > 0:
                         _continue_pose(body, memory, pose)
-                    stages = _record(stages, pose, trace)
+                    stages = record(stages, pose, trace)
                     iterations, stages = _rounds(pursued, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
             if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
-                if not end_solve(pursued, body, options, plugs, pose):
+                ended, stages = end_and_choose(
+                    pursued, body, options, plugs, memory, pose, trace, stages
+                )
+                if not ended:
                     failed = FAILED + 4
-                stages = _record(stages, pose, trace)
-                if options.choose != 0 and failed == 0:
-                    if not choose_pose(pursued, body, options, plugs, memory, pose):
-                        failed = FAILED + 4
-                    stages = _record(stages, pose, trace)
             if options.max_iterations > 0 and options.end_orientation > 0.0 and not isnan(turn[0]):
                 orient_end(turn, options.end_orientation, body, pose)
     _settle_pose(body, options, fk, memory, pose)
@@ -325,7 +323,7 @@ def _rounds(
         if done % RENEW_EVERY == 0:
             for joint in range(body.offsets.shape[0]):
                 renew_angles(joint, pose)
-        stages = _record(stages, pose, trace)
+        stages = record(stages, pose, trace)
         if not moved and strength >= 1.0:
             break
     return done, stages
@@ -335,20 +333,6 @@ def _rounds(
 def distance_to(goal: Vector, pose: Pose) -> float:
     """Return the distance of the end from a goal [length]."""
     return norm(subtract(goal, vector(pose.positions, pose.positions.shape[0] - 1)))
-
-
-@kernel
-def _record(stages: int, pose: Pose, trace: Array) -> int:
-    """Keep the pose's angles in the trace while it has room; return the stages so far."""
-    if stages >= trace.shape[0]:
-        return stages
-    for joint in range(pose.angles.shape[0]):
-        angles = vector(pose.angles, joint)
-        if pose.free[joint]:
-            # Read only: what is traced must not change what is solved.
-            angles = nearest_form(matrix_to_hpb(matrix(pose.relative, joint), angles[2]), angles)
-        store_vector(angles, trace[stages], joint)
-    return stages + 1
 
 
 @kernel
@@ -382,7 +366,7 @@ def _write_numbers(
     numbers: Array,
 ) -> None:
     """Write iterations, distance, status and bend direction of a solve into numbers (7,)."""
-    if pose.scratch[LIMIT_FAILED, 0] != 0.0:
+    if limits_failed(pose):
         failed = FAILED + 5
     distance = distance_to(goal, pose)
     numbers[ITERATIONS] = iterations

@@ -32,6 +32,7 @@ from limbik.plugins.finish.linkage import (
     end_at,
     motion,
     pulled,
+    read,
     turned_by,
     write,
 )
@@ -172,13 +173,8 @@ def _bar_ways_out(weights: Vector, end: Vector, chain: Linkage, scratch: Array) 
         step = unit(_turn_of(joint, weights, end, scratch))
         pull = _pull(step, joint, chain, scratch)
         if norm(pull) > PUSHED:
-            way = unit(pull)
-            gradient = (
-                _outward(0, way, joint, chain, scratch),
-                _outward(1, way, joint, chain, scratch),
-                _outward(2, way, joint, chain, scratch),
-            )
-            _flatten_axes(unit(gradient), joint, scratch)
+            _find_gradient(unit(pull), joint, chain, scratch)
+            _flatten_axes(unit(read(scratch, joint, TRIAL)), joint, scratch)
             found = True
     return found
 
@@ -193,16 +189,23 @@ def _pull(way: Vector, joint: int, chain: Linkage, scratch: Array) -> Vector:
 
 
 @kernel
-def _outward(axis: int, way: Vector, joint: int, chain: Linkage, scratch: Array) -> float:
-    """Return how far a turn about an axis leads out of the limit that pulls along a direction.
+def _find_gradient(way: Vector, joint: int, chain: Linkage, scratch: Array) -> None:
+    """Find how far a turn about each axis leads out of the limit that pulls along a direction.
 
-    A limit may pull aslant to its surface; this is its gradient, to which sliding is square.
+    A limit may pull aslant to its surface; this is its gradient, to which sliding is square. It
+    is left in the joint's TRIAL columns.
     """
-    turn = (1.0 if axis == 0 else 0.0, 1.0 if axis == 1 else 0.0, 1.0 if axis == 2 else 0.0)
-    out = dot(_pull(turn, joint, chain, scratch), way)
-    if abs(out) > PUSHED:
-        return out
-    return -dot(_pull(scale(turn, -1.0), joint, chain, scratch), way)
+    write((0.0, 0.0, 0.0), scratch, joint, TRIAL)
+    for number in range(6):
+        axis, sign = number % 3, 1.0 if number < 3 else -1.0
+        turn = (
+            sign if axis == 0 else 0.0,
+            sign if axis == 1 else 0.0,
+            sign if axis == 2 else 0.0,
+        )
+        out = dot(_pull(turn, joint, chain, scratch), way)
+        if abs(out) > PUSHED and scratch[joint, TRIAL + axis] == 0.0:
+            scratch[joint, TRIAL + axis] = sign * out
 
 
 @kernel

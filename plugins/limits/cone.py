@@ -70,9 +70,11 @@ def cone(angles: Array, params: Cone, margin: Array) -> None:
     inner_bank = bank
     if high - low < FULL_TURN:
         inner_bank = nearest_in_range(bank, bank, low, high)
-        if high - low > NARROW:
-            past = abs(inner_bank - bank)
-            left = min(left, min(bank - low, high - bank) if past == 0.0 else -past)
+        past = abs(inner_bank - bank)
+        if past > ROUNDING:
+            left = min(left, -past)
+        elif high - low > NARROW:
+            left = min(left, bank - low, high - bank)
     margin[0] = left
     off = max(abs(inner_x - x), abs(inner_y - y), abs(inner_bank - bank))
     if off <= ROUNDING:
