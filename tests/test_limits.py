@@ -210,7 +210,7 @@ class Third:
 
         def broken(angles, params, margin):  # type: ignore[no-untyped-def]
             margin[0] = 0.0
-            if angles[1] > 0.2 and angles[0] < -0.1:
+            if angles[1] > 0.01 and angles[0] < -0.1:
                 angles[0] = np.nan
 
         return [Strategy("level", level), Strategy("broken", broken)]

@@ -94,17 +94,10 @@ def turn_joint(
             return turn_inside(joint, operating, target, wanted, zone, pose)
         store_matrix(wanted, pose.relative, joint)
         return True
-    if (
-        pose.hinged[joint]
-        and not watched
-        and not options.plain_clamp
-        and not options.max_violations
-    ):
-        # A joint with a fixed axis can seldom make the whole turn: take the best it can at once.
-        before = vector(pose.angles, joint)
-        low, high = vector(pose.low, joint), vector(pose.high, joint)
-        angles, turn = re_aim(before, low, high, operating, aim)
-        return _move(joint, before, angles, turn, zone, pose)
+    if pose.hinged[joint] and not options.plain_clamp and not options.max_violations:
+        return _turn_hinged(
+            joint, operating, target, aim, relative, zone, locked, in_ccd, pose, plugs
+        )
     full = multiply(axis_trig_to_matrix(axis, s, c), relative)
     return _turn_limited(
         joint, operating, target, aim, relative, full, zone, locked, in_ccd, pose, options, plugs
@@ -141,6 +134,39 @@ def _move(
     store_vector(angles, pose.angles, joint)
     store_matrix(turn, pose.relative, joint)
     return max(abs(change[0]), abs(change[1]), abs(change[2])) > ZERO_TURN
+
+
+@kernel
+def _turn_hinged(
+    joint: int,
+    operating: Vector,
+    target: Vector,
+    aim: Vector,
+    relative: Matrix,
+    zone: float,
+    locked: bool,
+    in_ccd: bool,
+    pose: Pose,
+    plugs: Plugs,
+) -> bool:
+    """Turn a joint with a fixed axis: it can seldom make the whole turn, so take the best at once.
+
+    Arguments and result as in `_turn_limited`. What the bank suppression judges is the change that
+    the joint can make.
+    """
+    before = vector(pose.angles, joint)
+    low, high = vector(pose.low, joint), vector(pose.high, joint)
+    if locked:
+        low, high = (low[0], low[1], before[2]), (high[0], high[1], before[2])
+    angles, turn = re_aim(before, low, high, operating, aim)
+    if plugs.bank_suppression != 0:
+        delta = subtract(angles, before)
+        toward = rotate_back(relative, target)
+        steered = _suppress(joint, delta, toward, operating, before, in_ccd, pose, plugs)
+        if steered != delta:
+            low, high = _decided(angles, add(before, steered), low, high)
+            angles, turn = re_aim(clamp_vector(before, low, high), low, high, operating, aim)
+    return _move(joint, before, angles, turn, zone, pose)
 
 
 @kernel
@@ -201,21 +227,12 @@ def _turn_limited(
         moved_to = add(before, steered)
         low, high = _decided(wanted, moved_to, low, high)
         wanted = moved_to
-    cut = (
-        clamp(wanted[0], low[0], high[0]),
-        clamp(wanted[1], low[1], high[1]),
-        clamp(wanted[2], low[2], high[2]),
-    )
+    cut = clamp_vector(wanted, low, high)
     gap = angle_gap(cut, wanted)
     exceeded = gap > ZERO_TURN
     pose.violations[joint] = pose.violations[joint] + 1 if exceeded else 0
     if exceeded and not options.plain_clamp:
-        start = (
-            clamp(before[0], low[0], high[0]),
-            clamp(before[1], low[1], high[1]),
-            clamp(before[2], low[2], high[2]),
-        )
-        angles, turn = re_aim(start, low, high, operating, aim)
+        angles, turn = re_aim(clamp_vector(before, low, high), low, high, operating, aim)
         return _move(joint, before, angles, turn, zone, pose)
     if gap == 0.0 and not locked and plugs.bank_suppression == 0:
         return _move(joint, before, wanted, full, zone, pose)
@@ -226,6 +243,16 @@ def _turn_limited(
 def angle_gap(a: Vector, b: Vector) -> float:
     """Return the largest difference of two triples of angles [rad]."""
     return max(abs(a[0] - b[0]), abs(a[1] - b[1]), abs(a[2] - b[2]))
+
+
+@kernel
+def clamp_vector(angles: Vector, low: Vector, high: Vector) -> Vector:
+    """Return a triple of angles pulled into ranges."""
+    return (
+        clamp(angles[0], low[0], high[0]),
+        clamp(angles[1], low[1], high[1]),
+        clamp(angles[2], low[2], high[2]),
+    )
 
 
 @kernel
@@ -308,11 +335,7 @@ def _decided(wanted: Vector, steered: Vector, low: Vector, high: Vector) -> tupl
 
     Neither the clamp nor a re-aim may undo what the strategy decided.
     """
-    fixed = (
-        clamp(steered[0], low[0], high[0]),
-        clamp(steered[1], low[1], high[1]),
-        clamp(steered[2], low[2], high[2]),
-    )
+    fixed = clamp_vector(steered, low, high)
     return (
         (
             low[0] if steered[0] == wanted[0] else fixed[0],
