@@ -18,7 +18,7 @@ IDS = (
     + ["E-02A", "E-02B", "E-02C", "E-03A", "E-03B", "E-03C"]
     + [f"E-11{letter}" for letter in "ABCDEFGHIJKLM"]
     + [f"K-{k:02}" for k in range(1, 9)]
-    + ["M-02"]
+    + ["F-01", "M-02", "M-05", "M-08", "M-09"]
 )
 
 
