@@ -239,5 +239,6 @@ OPTIONS = st.fixed_dictionaries(
         "start": st.sampled_from(["bend", "current"]),
         "soft_zone": st.floats(0.0, 0.2),
         "end_orientation": st.floats(0.0, 1.0),
+        "limit_ease": st.floats(0.0, 90.0),
     },
 )

@@ -122,7 +122,7 @@ def turn_inside(
         angles = inside(joint, matrix_to_hpb(turned, bank), pose)
         rotation = hpb_to_matrix(angles)
         after = angle_between(rotate(rotation, operating), target)
-        if after < before:
+        if after < before or isnan(after):  # what is no number is kept, to be found and told
             store_vector(angles, pose.angles, joint)
             store_matrix(rotation, pose.relative, joint)
             return before - after > ZERO_TURN
