@@ -4,6 +4,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from limbik.core.body import BodyChain as BodyChain
+    from limbik.core.body import BodySolver as BodySolver
+    from limbik.core.bodyscene import read_body as read_body
     from limbik.core.chain import Chain as Chain
     from limbik.core.chain import Joint as Joint
     from limbik.core.controller import Controller as Controller
@@ -17,24 +20,30 @@ if TYPE_CHECKING:
     from limbik.core.pole import PoleRotor as PoleRotor
     from limbik.core.registry import Registry as Registry
     from limbik.core.settings import Settings as Settings
+    from limbik.core.skeleton import JointSkeleton as JointSkeleton
     from limbik.core.solution import Continuity as Continuity
     from limbik.core.solution import Solution as Solution
     from limbik.core.solution import Status as Status
     from limbik.core.solver import Solver as Solver
     from limbik.core.solver2d import Solver2D as Solver2D
     from limbik.core.strategy import Strategy as Strategy
+    from limbik.plugins.solvers.refine.solver import PoseSolver as PoseSolver
 
 __version__ = "0.1.0"
 
 # Public names load on first use, so that `import limbik` stays light. The imports are absolute
 # on purpose: pytest imports this file once more under the name of the checkout's folder.
 _PUBLIC = {
+    "BodyChain": "limbik.core.body",
+    "BodySolver": "limbik.core.body",
     "Chain": "limbik.core.chain",
     "Continuity": "limbik.core.solution",
     "Controller": "limbik.core.controller",
     "Joint": "limbik.core.chain",
+    "JointSkeleton": "limbik.core.skeleton",
     "Pole": "limbik.core.pole",
     "PoleRotor": "limbik.core.pole",
+    "PoseSolver": "limbik.plugins.solvers.refine.solver",
     "LimbikError": "limbik.core.errors",
     "Match": "limbik.core.match",
     "Registry": "limbik.core.registry",
@@ -48,6 +57,7 @@ _PUBLIC = {
     "hookimpl": "limbik.core.hooks",
     "match_fk": "limbik.core.match",
     "match_ik": "limbik.core.match",
+    "read_body": "limbik.core.bodyscene",
 }
 
 

@@ -15,6 +15,7 @@ from limbik import __version__
 from limbik.plugins.commands.bake import bake
 from limbik.plugins.commands.check import check
 from limbik.plugins.commands.compare import compare
+from limbik.plugins.commands.experiment import experiment
 from limbik.plugins.commands.init import init
 from limbik.plugins.commands.inspect import inspect
 from limbik.plugins.commands.judge import judge
@@ -45,6 +46,7 @@ for command in (
     plugins,
 ):
     app.command()(command)
+app.add_typer(experiment, name="experiment")
 
 
 def _version(wanted: bool) -> None:

@@ -4,6 +4,7 @@ python benchmarks/bench_trajectory.py
 """
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -11,6 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, Slerp
 
+from limbik import PoseSolver
 from limbik.core.scene import read_scene
 from limbik.core.solver import Solver
 from limbik.plugins.paths.moves import Junction, Move
@@ -59,17 +61,24 @@ def _timed(function: Callable[[], None]) -> float:
     return perf_counter() - start
 
 
-def motion() -> float:
-    """Time of a sample of joint motion on the arm of configs/weld.yaml, the best of 5 [s]."""
+def motion() -> tuple[float, float]:
+    """Time of a sample of joint motion on the arm of configs/weld.yaml, the best of 5 [s].
+
+    Returns:
+        For positions alone, and for pose goals.
+    """
     scene = read_scene(Path(__file__).parents[1] / "configs" / "weld.yaml")
     samples = scene_trajectory(scene).sample(0.002)
-    solver = Solver(scene.chain, scene.settings)
-    joint_motion(samples, solver)
-    best = min(_timed(lambda: _solve(samples, solver)) for _ in range(5))
-    return best / len(samples)
+    tolerance = scene.settings.tolerance
+    found = []
+    for solver in (Solver(scene.chain, scene.settings), PoseSolver(scene.chain, tolerance)):
+        run = partial(_solve, samples, solver)
+        run()
+        found.append(min(_timed(run) for _ in range(5)) / len(samples))
+    return found[0], found[1]
 
 
-def _solve(samples: Samples, solver: Solver) -> None:
+def _solve(samples: Samples, solver: Solver | PoseSolver) -> None:
     joint_motion(samples, solver)
 
 
@@ -79,8 +88,9 @@ if __name__ == "__main__":
     # One after the other in turn, so that what else the machine does hits both.
     pairs = [(_timed(scipy_alone), _timed(limbik_program)) for _ in range(ROUNDS)]
     alone, program = (min(times) for times in zip(*pairs, strict=True))
-    sample = motion()
+    sample, posed = motion()
     print(f"scipy alone    {alone * 1e3:7.2f} ms")
     print(f"limbik program {program * 1e3:7.2f} ms, {program / alone:.2f} times (at most {MOST})")
     print(f"joint motion   {sample * 1e6:7.1f} µs a sample (at most {MOST_MICROSECONDS})")
+    print(f"  pose goals   {posed * 1e6:7.1f} µs a sample")
     raise SystemExit(program > MOST * alone or sample > MOST_MICROSECONDS * 1e-6)

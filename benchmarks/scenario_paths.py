@@ -4,7 +4,7 @@ python benchmarks/scenario_paths.py
 """
 
 from collections.abc import Callable
-from math import cos, pi, sin, sqrt
+from math import asin, cos, pi, radians, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +69,38 @@ def sink(t: float) -> Point:
     return 0.02 * sin(2.0 * pi * t), 0.80 + 0.13 * cos(pi * t / 2.0), 0.0
 
 
+def nod(t: float) -> Point:
+    """Tip of an upright spine that stays where it is but for a breath, 2 s."""
+    return 0.0, 0.93 + 0.01 * sin(pi * t), 0.0
+
+
+def bar(t: float) -> Point:
+    """Left hand on a bar that turns 35 degrees each way, from a shoulder that leans, 4 s.
+
+    The shoulder is 0.25 beside the spine, whose tip leans 0.15 forward; the bar turns about its
+    middle, 0.7 in front of the upright spine's tip and 0.1 below.
+    """
+    lean, turn = 0.15 * sin(pi * t / 2.0), radians(35.0) * sin(pi * t)
+    tilt = asin(lean)
+    hand = 0.25 * cos(turn), -0.1 + 0.25 * sin(turn), 0.7
+    x, y, z = hand[0] - 0.25, hand[1] + 1.0 - cos(tilt), hand[2] - lean
+    return x, y * cos(tilt) + z * sin(tilt), z * cos(tilt) - y * sin(tilt)
+
+
+def planted(t: float) -> Point:
+    """A planted foot as a pelvis sees it that circles in 2 s, radius 0.08."""
+    return 0.08 * cos(pi * t), -0.93, 0.08 * sin(pi * t)
+
+
+def round_trip(count: int = 50, straight: int = 10) -> list[Point]:
+    """Ends of random arms, the first of them dead straight."""
+    rng = np.random.default_rng(10)
+    way = rng.normal(size=(count, 3))
+    far = np.where(np.arange(count) < straight, 1.0, rng.uniform(0.3, 0.98, count))
+    way *= (far / np.linalg.norm(way, axis=1))[:, None]
+    return [(x, y, z) for x, y, z in way.tolist()]
+
+
 def overhead(t: float) -> Point:
     """Hand from the front over the shoulder to the back and again to the front, 4 s."""
     turn = 0.75 * pi * (1.0 - cos(pi * t / 2.0)) / 2.0
@@ -105,6 +137,10 @@ def main() -> None:
     write("sink", sampled(sink, 4.0))
     write("overhead", sampled(overhead, 4.0))
     write("keys", keys())
+    write("nod", sampled(nod, 2.0))
+    write("bar", sampled(bar, 4.0))
+    write("planted", sampled(planted, 2.0))
+    write("round-trip", round_trip())
 
 
 if __name__ == "__main__":

@@ -5,12 +5,15 @@ Each benchmark also checks what it measured, so that a wrong answer is not a fas
 
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
+from limbik.core.body import BodySolver
+from limbik.core.bodyscene import read_body
 from limbik.core.chain import Chain, Joint
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
@@ -56,6 +59,15 @@ def test_solve_of_a_ball_chain(benchmark: BenchmarkFixture) -> None:
     solver = bound(ball(20.0, 20.0, 20.0), **BASE)
     solution = benchmark(solver.solve, (12.0, 9.0, 30.0))
     assert solution.distance < 1e-7
+
+
+def test_solve_of_a_body(benchmark: BenchmarkFixture) -> None:
+    """From Python, one frame of a humanoid: spine, two arms, two legs, all 33 joints placed."""
+    scene = read_body(Path(__file__).parents[1] / "configs" / "body.yaml")
+    solver = BodySolver.of(scene)
+    wanted = {name: places[0] for name, places in scene.goals.items()}
+    found = benchmark(solver.solve, wanted)
+    assert found.reached
 
 
 def test_building_a_chain_and_a_solver(benchmark: BenchmarkFixture) -> None:

@@ -6,11 +6,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from limbik.core.formats import Bake
-from limbik.core.mirror import mirrored_solution
+from limbik.core.body import BodySolver, chain_solutions
+from limbik.core.bodyscene import BodyScene
+from limbik.core.formats import Bake, BodyBake, Motion
+from limbik.core.mirror import mirrored_solution, side_swapped
 from limbik.core.motion import motion_metrics
+from limbik.core.posegoals import solve_turned
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
+from limbik.core.rotation import Array
+from limbik.core.scene import Scene, require_goals
+from limbik.core.skeleton import Limb, Skeleton
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
 from limbik.core.solving import scene_solver, solve_part
@@ -50,9 +55,12 @@ def bake_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
+    require_goals(scene)
     if scene.solver is not None:
-        parts = [prepare(scene.solver, scene.chain, scene.settings)(scene.goals, scene.follow)]
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        parts = [solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)]
     else:
         parts = _blocks(scene, registry, progress)
     solution = _joined(parts)
@@ -78,12 +86,69 @@ def _blocks(
     return parts
 
 
+def bake_body(
+    scene: BodyScene,
+    registry: Registry | None = None,
+    *,
+    mirrored: bool = False,
+    frame_time: float | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> BodyBake:
+    """Solve all frames of a scene with several chains; as `bake_scene`."""
+    solver = BodySolver.of(scene, registry)
+    found = []
+    for number, body in enumerate(solver.frames(scene.goals), 1):
+        found.append(body)
+        if progress is not None and (number % BLOCK == 0 or number == len(scene.frame_names)):
+            progress(number)
+    seconds = frame_time or scene.frame_time or FRAME_TIME
+    solutions = {name: stacked(of) for name, of in chain_solutions(found).items()}
+    chains = [(part.limb, solutions[part.name].angles) for part in scene.parts]
+    motion = body_motion(scene.skeleton, chains, seconds)
+    if mirrored:
+        names = side_swapped(list(solutions))
+        images = map(mirrored_solution, solutions.values())
+        solutions = dict(zip(names, images, strict=True))
+    metrics = {name: motion_metrics(of).record() for name, of in solutions.items()}
+    return BodyBake(scene, solutions, motion, seconds, mirrored, metrics)
+
+
+def body_motion(
+    skeleton: Skeleton, chains: Sequence[tuple[Limb, Array]], frame_time: float
+) -> Motion:
+    """Return the motion of a whole skeleton, what is of no chain moving as it does by itself.
+
+    Args:
+        skeleton: The skeleton.
+        chains: Limb and HPB angles, (m, n, 3) [rad], in the order they were solved.
+        frame_time: Seconds a frame.
+    """
+    motion = skeleton.motion
+    count = len(chains[0][1])
+    offsets, turns = (
+        np.broadcast_to(array, (count, *array.shape[1:])).copy()
+        for array in (motion.offsets, motion.turns)
+    )
+    for limb, angles in chains:
+        turns[:, list(limb.at[: limb.written])] = limb.turns(angles)
+    return replace(motion, offsets=offsets, turns=turns, frame_time=frame_time)
+
+
+def stacked(solutions: Sequence[Solution]) -> Solution:
+    """Put solutions of single goals, of one chain, into one with a leading goal axis."""
+    return _gathered(solutions, np.stack)
+
+
 def _joined(parts: Sequence[Solution]) -> Solution:
     """Put solutions with leading goal axes behind each other."""
+    return _gathered(parts, np.concatenate)
+
+
+def _gathered(parts: Sequence[Solution], gather: Callable[[list[Array]], Array]) -> Solution:
     names = [*_ARRAYS, *(PLANAR_ARRAYS if isinstance(parts[-1], PlanarSolution) else ())]
     joined: dict[str, Any] = {
-        name: np.concatenate([getattr(part, name) for part in parts])
+        name: gather([getattr(part, name) for part in parts])
         for name in names
         if getattr(parts[-1], name) is not None
     }
-    return replace(parts[-1], **joined)
+    return replace(parts[0], **joined, continuity=parts[-1].continuity)

@@ -1,13 +1,16 @@
 """`Joint` and `Chain`: what a user builds; checked once, then frozen arrays (000 §4, §7.4)."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import isfinite, pi, radians
 from typing import Any, Final
 
 import numpy as np
 
 from limbik.core.errors import ChainError
+from limbik.core.kernels.rotation import matrix_to_hpb
 from limbik.core.rotation import Array, hpb_to_matrix
 
 Vector = tuple[float, float, float]
@@ -173,6 +176,13 @@ class Chain:
         """Sum of the bone lengths [length]."""
         return float(self.lengths.sum())
 
+    @cached_property
+    def rest_pose(self) -> tuple[Array, Array]:
+        """World positions (n, 3) [length] and rotations (n, 3, 3) of the joints at rest."""
+        from limbik.core.pose import forward_kinematics
+
+        return forward_kinematics(self, self.rest)
+
     @property
     def is_straight(self) -> bool:
         """Whether all joints lie on one line in the rest pose (bind type, 000 §7.4).
@@ -190,6 +200,29 @@ class Chain:
             if np.abs(direction - first).max() > STRAIGHT:
                 return False
         return True
+
+    def moved(self, position: Array, rotation: Array) -> "Chain":
+        """Return the chain with its base elsewhere; nothing is checked again.
+
+        Args:
+            position: Where the parent of joint 0 stands in the world, (3,) [length].
+            rotation: Its axes in the world, (3, 3).
+        """
+        found = copy(self)
+        rows = rotation.tolist()
+        turn = matrix_to_hpb((tuple(rows[0]), tuple(rows[1]), tuple(rows[2])), 0.0)
+        axes = np.array(rotation, np.float64, order="C")
+        axes.flags.writeable = False
+        object.__setattr__(found, "base_position", tuple(position.tolist()))
+        object.__setattr__(found, "base_turn", turn)
+        object.__setattr__(found, "base_rotation", axes)
+        places, turns = self.rest_pose
+        change = axes @ self.base_rotation.T
+        found.__dict__["rest_pose"] = (
+            position + (places - np.array(self.base_position)) @ change.T,
+            change @ turns,
+        )
+        return found
 
     def mirrored(self) -> "Chain":
         """Return the chain mirrored in the world's YZ plane (M-14).

@@ -19,7 +19,9 @@ from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.settings import Model
 
 if TYPE_CHECKING:
+    from limbik.core.bodyscene import BodyScene
     from limbik.core.scene import Scene
+    from limbik.core.skeleton import Skeleton
     from limbik.core.solution import Solution
 
 
@@ -66,6 +68,7 @@ class Body:
             holds no motion.
         goal_names: m names.
         frame_time: Seconds a frame of that motion.
+        goal_turns: How the end is turned there, HPB, (m, 3) [rad]; turns pole rotors.
     """
 
     chain: Chain
@@ -73,6 +76,7 @@ class Body:
     goals: Array | None = None
     goal_names: tuple[str, ...] = ()
     frame_time: float | None = None
+    goal_turns: Array | None = None
 
     def motion(self, angles: Array, frame_time: float) -> Motion:
         """Return the whole skeleton's motion for the chain's angles, HPB (m, n, 3) [rad]."""
@@ -118,6 +122,19 @@ class Inspection:
 
 
 @dataclass(frozen=True)
+class SkeletonInput:
+    """How a kind of file gives a whole skeleton.
+
+    Attributes:
+        model: What the `skeleton` mapping of a scene may hold.
+        read: Makes a skeleton of a checked model, as the scene input's `read` makes a body.
+    """
+
+    model: type[Model]
+    read: "Callable[[Any, Path], Skeleton]"
+
+
+@dataclass(frozen=True)
 class SceneInput:
     """A kind of file a chain can come from.
 
@@ -130,6 +147,8 @@ class SceneInput:
         inspect: Says what a file holds. Raises InputError.
         description: One sentence.
         has_goals: Whether its files may hold the goals, so that a scene needs none.
+        skeleton: How such files give the skeleton of a scene with several chains; None if they
+            give single chains only.
     """
 
     name: str
@@ -139,6 +158,7 @@ class SceneInput:
     inspect: Callable[[Path], Inspection]
     description: str = ""
     has_goals: bool = False
+    skeleton: "SkeletonInput | None" = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +185,28 @@ class Bake:
         return self.scene.body or Body(self.scene.chain)
 
 
+@dataclass(frozen=True, eq=False)
+class BodyBake:
+    """A scene of several chains with its solved motion, to be written.
+
+    Attributes:
+        scene: The scene.
+        solutions: Of each chain by its name, in the scene's order, all frames in order with a
+            leading goal axis; mirrored if `mirrored`, and named for their new side.
+        motion: The whole skeleton, solved, before a mirror.
+        frame_time: Seconds from frame to frame.
+        mirrored: Whether left and right are exchanged.
+        metrics: Of each chain by its name, see `Bake`.
+    """
+
+    scene: "BodyScene"
+    solutions: "dict[str, Solution]"
+    motion: Motion
+    frame_time: float
+    mirrored: bool = False
+    metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Output:
     """A kind of file a baked motion can be written to.
@@ -174,12 +216,14 @@ class Output:
         suffixes: Endings of its files that choose it, such as `.csv`.
         write: Gives the content of the whole file. Raises InputError if the motion does not fit.
         description: One sentence.
+        write_body: The same for scenes of several chains; None if such files hold one chain.
     """
 
     name: str
     suffixes: tuple[str, ...]
     write: Callable[[Bake], str | bytes]
     description: str = ""
+    write_body: Callable[[BodyBake], str | bytes] | None = None
 
 
 FORMAT_HOOKS: dict[str, tuple[str, type]] = {

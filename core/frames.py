@@ -49,6 +49,8 @@ class Axes:
 
 Z_UP: Final = Axes("right-handed, Z up", (0, 2, 1), (1.0, 1.0, 1.0))
 Y_UP: Final = Axes("right-handed, Y up", (0, 1, 2), (-1.0, 1.0, 1.0))
+BY_NAME: Final = {"y-up": Y_UP, "z-up": Z_UP}
+"""Axes other than limbik's, by the names scenes give them."""
 
 
 def turn_about(axis: ArrayLike, angle: ArrayLike) -> Array:

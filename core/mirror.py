@@ -1,4 +1,4 @@
-"""Left and right exchanged: names, and the solution of a mirrored problem (M-14).
+"""Left and right exchanged: names, options, and the solution of a mirrored problem (M-14).
 
 A mirrored chain with mirrored goals has the mirrored poses for its answers, so a solution is
 mirrored instead of solved again; whatever options and strategies it was solved with, they were
@@ -6,17 +6,22 @@ the same ones, mirrored.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
+from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.frames import Y_UP, mirror_hpb
+from limbik.core.posegoals import PoseSolution
+from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
+from limbik.core.strategy import mirrored
 
+_ACROSS: Final = {"x+": "x-", "x-": "x+"}
 _WORDS: Final = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 _LETTERS: Final = (("L", "R"), ("l", "r"))
 
@@ -43,6 +48,8 @@ def mirrored_solution(solution: Solution) -> Solution:
         continuity=None,
         trace=None,
     )
+    if isinstance(mirrored, PoseSolution):
+        return replace(mirrored, goal_rotation=Y_UP.rotations(mirrored.goal_rotation))
     return _mirrored_plane(mirrored) if isinstance(mirrored, PlanarSolution) else mirrored
 
 
@@ -57,6 +64,32 @@ def _mirrored_plane(solution: PlanarSolution) -> PlanarSolution:
         rotor=None if rotor is None else Y_UP.rotations(rotor),
         goal_rotation=None if goal is None else Y_UP.rotations(goal),
     )
+
+
+def mirrored_settings(settings: Settings, strategies: Mapping[str, Bound]) -> Settings:
+    """Return the options of a mirrored chain, with which it takes the mirrored poses.
+
+    Args:
+        settings: The options.
+        strategies: What they choose, by slot; marked `Sided` is what they change in the mirror.
+    """
+    given = settings.model_dump(exclude_unset=True)
+    changes: dict[str, Any] = {}
+    for slot, bound in strategies.items():
+        image = mirrored(bound.params)
+        if image != bound.params._asdict():
+            changes[slot] = {"use": bound.name, **image}
+    if settings.twist:
+        changes["twist"] = -settings.twist
+    if settings.reference_axis in _ACROSS:
+        changes["reference_axis"] = _ACROSS[settings.reference_axis]
+    cone = settings.forbidden_cone
+    if cone is not None and cone.axis in _ACROSS:
+        changes["forbidden_cone"] = {**cone.model_dump(), "axis": _ACROSS[cone.axis]}
+    if settings.choose is not None and settings.choose.pose is not None:
+        pose = {name: (-h, p, -b) for name, (h, p, b) in settings.choose.pose.items()}
+        changes["choose"] = {**settings.choose.model_dump(), "pose": pose}
+    return Settings(**{**given, **changes})
 
 
 def side_swapped(names: Sequence[str]) -> list[str]:

@@ -1,17 +1,21 @@
-"""What a solved path is like: its largest step, its pops, how much of it was reached (M-12)."""
+"""What a solved path is like: its largest step, its pops, how much of it was reached (M-12).
+
+Bakes tell it and `limbik judge` measures by it.
+"""
 
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.solution import Solution, Status
 
-POP_LEAST: Final = 2.0  # [deg]; nobody sees a smaller one
+POP_LEAST: Final = np.radians(3.0)  # [rad]; nobody sees a smaller one
 POP_RATIO: Final = 4.0
-POP_WINDOW: Final = 9  # frames a step is compared with
+POP_AROUND: Final = 4  # frames on either side that a step is compared with
 
 
 @dataclass(frozen=True)
@@ -25,8 +29,7 @@ class MotionMetrics:
         max_step: Largest turn of a joint between two frames [deg].
         max_step_joint: That joint; empty for a single frame.
         max_step_frame: Index of the frame it turns to; 0 for a single frame.
-        pops: Indices of the frames a joint jumps to: it turns by more than 2° and more than four
-            times the median of the nine steps around.
+        pops: Indices of the frames a joint jumps to, see `popping`.
     """
 
     frames: int
@@ -49,7 +52,7 @@ def motion_metrics(solution: Solution) -> MotionMetrics:
         solution: With a leading goal axis.
     """
     status = np.asarray(solution.status)
-    steps = joint_steps(solution.chain.frozen @ hpb_to_matrix(solution.angles))
+    steps = joint_steps(solution.angles)
     largest, joint, frame = 0.0, "", 0
     if steps.size:
         row, column = np.unravel_index(steps.argmax(), steps.shape)
@@ -62,30 +65,43 @@ def motion_metrics(solution: Solution) -> MotionMetrics:
         float(np.degrees(largest)),
         joint,
         frame,
-        _pops(np.degrees(steps)),
+        tuple((np.flatnonzero(popping(steps).any(axis=1)) + 1).tolist()),
     )
 
 
-def joint_steps(turns: Array) -> Array:
-    """Return how far each joint turns from frame to frame.
+def turn_between(first: Array, second: Array) -> Array:
+    """Return the angles between rotations [rad].
 
     Args:
-        turns: Rotations, (m, n, 3, 3).
+        first: (..., 3, 3).
+        second: (..., 3, 3).
+    """
+    # |A - B|² = 8 sin²(angle / 2): exact for small angles, where the trace is not.
+    apart = np.linalg.norm(first - second, axis=(-2, -1)) / np.sqrt(8.0)
+    return np.asarray(2.0 * np.arcsin(np.clip(apart, 0.0, 1.0)))
+
+
+def joint_steps(angles: Array) -> Array:
+    """Return how far each joint before the end turns from frame to frame.
+
+    Args:
+        angles: HPB, (m, n, 3) [rad].
 
     Returns:
-        Angles [rad], (m - 1, n).
+        Angles [rad], (m - 1, n - 1).
     """
-    change = np.swapaxes(turns[:-1], -1, -2) @ turns[1:]
-    across = np.stack([change[..., i, j] - change[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
-    trace = change[..., 0, 0] + change[..., 1, 1] + change[..., 2, 2]
-    return np.asarray(np.arctan2(np.linalg.norm(across, axis=0), trace - 1.0))
+    turns = hpb_to_matrix(angles[:, :-1])
+    return turn_between(turns[:-1], turns[1:])
 
 
-def _pops(steps: Array) -> tuple[int, ...]:
-    if len(steps) < 2:
-        return ()
-    half = POP_WINDOW // 2
-    padded = np.pad(steps, ((half, half), (0, 0)), mode="reflect" if len(steps) > half else "edge")
-    usual = np.median(sliding_window_view(padded, POP_WINDOW, axis=0), axis=-1)
-    jumps = (steps > POP_LEAST) & (steps > POP_RATIO * usual)
-    return tuple((np.flatnonzero(jumps.any(axis=1)) + 1).tolist())
+def popping(steps: Array) -> NDArray[np.bool_]:
+    """Tell which steps stand out: above 3°, and four times the median of the nine around them.
+
+    Args:
+        steps: As `joint_steps` gives them, (k, n) [rad].
+    """
+    if not len(steps):
+        return np.zeros(steps.shape, bool)
+    padded = np.pad(steps, ((POP_AROUND, POP_AROUND), (0, 0)), constant_values=np.nan)
+    usual = np.nanmedian(sliding_window_view(padded, 2 * POP_AROUND + 1, axis=0), axis=-1)
+    return np.asarray((steps > POP_LEAST) & (steps > POP_RATIO * usual))

@@ -12,7 +12,6 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from limbik.core.chain import Chain
-from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Model
 
@@ -67,7 +66,7 @@ class Pole(Model):
 
 def rest_line(chain: Chain) -> Array:
     """Return the unit vector base→end of the rest pose, world; the base's Z axis if they meet."""
-    positions, rotations = forward_kinematics(chain, chain.rest)
+    positions, rotations = chain.rest_pose
     away = positions[-1] - positions[0]
     length = float(np.linalg.norm(away))
     return np.asarray(away / length if length > NO_LENGTH else rotations[0, :, 2])
@@ -91,7 +90,7 @@ def rotor_frames(
     Returns:
         Axes as columns in the world, (m, 3, 3).
     """
-    positions, rotations = forward_kinematics(chain, chain.rest)
+    positions, rotations = chain.rest_pose
     start = rest_line(chain)
     line = _directions(goals - positions[0], start)
     spare = np.cross(start, pole - positions[0])
@@ -123,7 +122,7 @@ def goal_axes(
     if rotor is not None and frames is not None and (rotor.orient_goal or rotor.sync_z):
         found = frames
         if not rotor.orient_goal:
-            _, rotations = forward_kinematics(chain, chain.rest)
+            _, rotations = chain.rest_pose
             found = align_z(np.broadcast_to(rotations[-1], frames.shape), frames)
     if turns is None or found is None:
         return found if turns is None else turns
@@ -138,7 +137,7 @@ def align_z(frames: Array, to: Array) -> Array:
 
 def turned_poles(chain: Chain, pole: Array, frames: Array) -> Array:
     """Return where a pole is when its rotor has turned, (m, 3) [length], world."""
-    origin = forward_kinematics(chain, chain.rest)[0][0]
+    origin = chain.rest_pose[0][0]
     return np.asarray(origin + frames @ (chain.base_rotation.T @ (pole - origin)))
 
 

@@ -12,45 +12,47 @@ solver: 3d                     # optional: a whole solver by name, such as lambd
 options: {max_iterations: 100, initial_bend: {use: nth-root}}    # optional, keys of Settings
 fk: {elbow: [0, 15, 0]}        # optional FK offsets
 follow: false                  # optional: solve the goals as a path
+axes: limbik                   # optional: y-up or z-up if positions are right-handed
 judge: {rate: 60, max: {pops: 0}}                   # optional, thresholds for `limbik judge`
 solver: 3d                     # optional: 2d bends in the plane of base, goal and pole ...
 pole: {position: [0, 9, 9]}    # ... which 2d needs; see `limbik.core.scenemodel.PoleModel`
-goals:                         # a list, or {csv: goals.csv}
+goals:                         # a list, {csv: goals.csv}, {npz: motion.npz}; optional beside those
   - {name: mouth, position: [1, 2, 3]}
 ```
 
 Instead of its joints a chain may name a file and a part of it, as the scene inputs of the plug-ins
 define: `chain: {urdf: robot.urdf, base: torso, end: hand}`. A file with a motion brings goals too.
+Scenes with several chains are read by `limbik.core.bodyscene`.
 
 All faults of a file are found at once, each with line and column. Nothing here imports numba.
 """
 
-import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
 from limbik.core.binding import Bound
-from limbik.core.bodies import read_source
 from limbik.core.chain import MAX_JOINTS, Chain, Joint
-from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
+from limbik.core.chainfile import read_source
+from limbik.core.choices import checkable, strategy_faults
+from limbik.core.errors import ChainError, Fault, SceneError, shortlist
 from limbik.core.formats import Body
-from limbik.core.goals import read_goals
 from limbik.core.pole import Pole
+from limbik.core.posegoals import PoseBatch, turn_faults
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.scenemodel import CsvModel, JointModel, JudgeModel, SceneModel
+from limbik.core.scenegoals import goals_of, pole_of, turns_of, twice
+from limbik.core.scenemodel import JointModel, JudgeModel, SceneModel, SolveModel
 from limbik.core.sceneoptions import option_faults, unknown_joints
 from limbik.core.settings import Settings
-from limbik.core.slots import LIMIT, OPTIONS, SOLVER
+from limbik.core.slots import SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
-from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS, prepare
+from limbik.core.whole import OWN_SOLVERS, prepare
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
 
@@ -122,10 +124,19 @@ def read_scene(source: str | Path, registry: Registry | None = None) -> Scene:
         SceneError: With every fault that could be found.
         PluginError: Two plug-ins offer a strategy of one name.
     """
+    document, folder = open_scene(source)
+    return scene_from(document, folder, registry)
+
+
+def open_scene(source: str | Path) -> tuple[Document, Path]:
+    """Read the YAML of a scene; give it with the folder its relative paths start from.
+
+    Raises:
+        SceneError: It is no YAML, or not of the kind limbik reads.
+    """
     if str(source) == STDIN:
-        document = read_yaml(sys.stdin.buffer.read(MOST_BYTES + 1), "<stdin>")
-        return scene_from(document, Path(), registry)
-    return scene_from(read_yaml_file(source), Path(source).parent, registry)
+        return read_yaml(sys.stdin.buffer.read(MOST_BYTES + 1), "<stdin>"), Path()
+    return read_yaml_file(source), Path(source).parent
 
 
 def scene_from(document: Document, folder: Path, registry: Registry | None = None) -> Scene:
@@ -139,54 +150,98 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
     Raises:
         SceneError: With every fault that could be found.
     """
-    faults: list[Fault] = list(_strategy_faults(document, registry))
+    content = document.content
+    if isinstance(content, dict) and "chains" in content:
+        message = "this scene has several chains; a scene with one 'chain' is needed here"
+        raise SceneError([document.fault("chains", message, ("chains",), at_key=True)])
+    faults: list[Fault] = list(strategy_faults(document, registry))
     source = read_source(document, folder, registry)
     faults += source.faults
     model = None
     try:
-        model = SceneModel.model_validate(_checkable(source.content))
+        model = SceneModel.model_validate(checkable(source.content))
     except ValidationError as error:
         faults += validation_faults(error, document, SceneModel)
     if model is None or faults:
         raise SceneError(shortlist(faults))
 
-    body = source.body
-    joints = [joint.name for joint in model.chain.joints] if body is None else body.chain.names
-    faults += _name_faults(joints, model, document)
-    faults += option_faults(joints, model, document)
-    chain, solver = body.chain if body else None, None
+    if source.body is not None:
+        title = Path(document.name).stem.strip("<>")
+        return build_scene(title, model, document, folder, registry, source.body)
+    joints = [joint.name for joint in model.chain.joints]
+    faults += _joint_faults(joints, document)
+    chain = None
     try:
-        chain = chain or _chain(model)
-        solver = None if faults else _solver(model, chain, registry)
+        chain = _chain(model)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
-    names, goals, goal_faults = _goals(model, document, folder)
-    if body and body.goals is not None and "goals" not in document.content:
-        names, goals = body.goal_names, body.goals
-    faults += goal_faults
-    if chain is None or faults:
-        raise SceneError(shortlist(faults))
-    offsets = np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in chain.names])
     title = Path(document.name).stem.strip("<>")
-    pole = None
-    if model.pole is not None:
-        pole = Pole(position=model.pole.position, rotor=model.pole.rotor)
+    return build_scene(title, model, document, folder, registry, None, chain, joints, faults)
+
+
+def build_scene(
+    title: str,
+    model: SolveModel,
+    document: Document,
+    folder: Path,
+    registry: Registry | None,
+    body: Body | None,
+    chain: Chain | None = None,
+    joints: Sequence[str] = (),
+    faults: Sequence[Fault] = (),
+) -> Scene:
+    """Make a scene of a checked model, or one chain of a scene with several.
+
+    Args:
+        title: Name of the scene.
+        model: The model; it fits the document.
+        document: Where the model came from.
+        folder: Folder that relative paths start from.
+        registry: As for `read_scene`.
+        body: The chain, if it comes from elsewhere.
+        chain: The chain, if it does not; None if it is at fault.
+        joints: Names of the chain's joints, if it does not come from elsewhere.
+        faults: What is wrong already.
+
+    Raises:
+        SceneError: With every fault that could be found.
+    """
+    chain, names = (body.chain, body.chain.names) if body else (chain, tuple(joints))
+    found = [*faults, *unknown_joints(model.fk, names, ("fk",), document)]
+    limited = [] if chain is None else [j.name for j in chain.joints if j.limit is not None]
+    found += option_faults(names, limited, model, document)
+    solver = None
+    try:
+        if chain is not None and not found:
+            solver, turns_end = _solver(model, chain, registry)
+            found += turn_faults(model, turns_end, document)
+    except ChainError as error:
+        found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
+    goal_names, goals, goal_faults = goals_of(model, document, folder)
+    turns = turns_of(model)
+    if body and body.goals is not None and "goals" not in document.content:
+        goal_names, goals = body.goal_names, body.goals
+        turned = model.options.end_orientation or (model.pole and model.pole.rotor)
+        turns = body.goal_turns if turned else None
+    found += goal_faults
+    if chain is None or found:
+        raise SceneError(shortlist(found))
     return Scene(
         title,
         chain,
         model.options,
-        offsets,
-        names,
+        np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in names]),
+        goal_names,
         goals,
         model.follow,
         document,
         model.judge,
-        model.trajectory,
+        model.trajectory if isinstance(model, SceneModel) else None,
         body,
         solver,
-        pole,
+        pole_of(model),
         model.pole is not None and model.pole.bind,
-        _turns(model),
+        turns,
     )
 
 
@@ -201,106 +256,44 @@ def require_own_solver(scene: Scene, what: str) -> None:
         raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
 
 
-def _turns(model: SceneModel) -> Array | None:
-    """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
-    if isinstance(model.goals, CsvModel) or not any(goal.rotation for goal in model.goals):
-        return None
-    return np.radians([goal.rotation or (np.nan, np.nan, np.nan) for goal in model.goals])
+def require_goals(scene: Scene) -> None:
+    """Refuse a scene that has a trajectory and no goals.
+
+    Raises:
+        SceneError: It has none.
+    """
+    if not len(scene.goals):
+        hint = "'limbik trajectory' solves its trajectory"
+        fault = scene.document.fault("missing-key", "the scene has no goals", hint=hint)
+        raise SceneError([fault])
 
 
-def _choices(content: Any) -> Iterator[tuple[KeyPath, str, Any]]:
-    """Give place, slot and choice of every strategy a scene chooses, unchecked."""
-    if not isinstance(content, dict):
-        return
-    if content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
-        yield (SOLVER.name,), SOLVER.name, content[SOLVER.name]
-    options = content.get("options")
-    if isinstance(options, dict):
-        yield from ((("options", slot), slot, options[slot]) for slot in OPTIONS if slot in options)
-    chain = content.get("chain")
-    joints = chain.get("joints") if isinstance(chain, dict) else None
-    for number, joint in enumerate(joints if isinstance(joints, list) else ()):
-        if isinstance(joint, dict) and LIMIT.name in joint:
-            yield ("chain", "joints", number, LIMIT.name), LIMIT.name, joint[LIMIT.name]
-
-
-def _checkable(content: Any) -> Any:
-    """Leave out options without a strategy's name: `_strategy_faults` has them already."""
-    nameless = [
-        slot
-        for place, slot, choice in _choices(content)
-        if place[0] == "options"
-        and isinstance(choice, dict)
-        and not isinstance(choice.get("use"), str)
-    ]
-    if not nameless:
-        return content
-    options = {key: value for key, value in content["options"].items() if key not in nameless}
-    return {**content, "options": options}
-
-
-def _strategy_faults(document: Document, registry: Registry | None) -> Iterator[Fault]:
-    """Check each chosen strategy and its parameters against the registry."""
-    for place, slot, choice in _choices(document.content):
-        if not isinstance(choice, str | dict):
-            continue
-        registry = registry or Registry()
-        try:
-            registry.bind(slot, choice)
-        except InputError as error:
-            for fault in error.faults:
-                key = "use" if fault.code == "unknown-strategy" else fault.key
-                path = (*place, *_key_path(key))
-                at_key = fault.code == "unknown-key"
-                message = fault.message
-                if slot == SOLVER.name:
-                    message = message.replace("known: ", f"known: {', '.join(OWN_SOLVERS)}, ")
-                yield document.fault(fault.code, message, path, hint=fault.hint, at_key=at_key)
-
-
-def _key_path(key: str) -> KeyPath:
-    """Take `axis[2]` apart into `("axis", 2)`."""
-    parts = re.findall(r"\[(\d+)\]|([^.\[\]]+)", key)
-    return tuple(int(index) if index else name for index, name in parts)
-
-
-def _name_faults(names: Sequence[str], model: SceneModel, document: Document) -> Iterator[Fault]:
+def _joint_faults(names: Sequence[str], document: Document) -> Iterator[Fault]:
     joints: KeyPath = ("chain", "joints")
     if not 2 <= len(names) <= MAX_JOINTS:
         message = f"a chain has 2 to {MAX_JOINTS} joints, this one has {len(names)}"
         yield document.fault("joint-count", message, joints)
-    yield from _twice(names, joints, "joint", document)
-    yield from unknown_joints(model.fk, names, ("fk",), document)
-
-
-def _twice(
-    names: Sequence[str | None], path: KeyPath, what: str, document: Document
-) -> Iterator[Fault]:
-    first: dict[str | None, int] = {}
-    for index, name in enumerate(names):
-        if name is not None and name in first:
-            line, _ = document.position((*path, first[name], "name"))
-            message = f"the {what} '{name}' is given twice, first at line {line}"
-            yield document.fault("duplicate-name", message, (*path, index, "name"))
-        first.setdefault(name, index)
+    yield from twice(names, joints, "joint", document)
 
 
 def _chain(model: SceneModel) -> Chain:
     base = model.chain.base
     turn = tuple(np.radians(base.rotation).tolist())
-    return Chain([_joint(joint) for joint in model.chain.joints], base.position, turn)
+    return Chain([joint_of(joint) for joint in model.chain.joints], base.position, turn)
 
 
-def _solver(model: SceneModel, chain: Chain, registry: Registry | None) -> Bound | None:
-    """Bind the scene's solver; it refuses chains it does not solve."""
+def _solver(
+    model: SolveModel, chain: Chain, registry: Registry | None
+) -> tuple[Bound | None, bool]:
+    """Bind the scene's solver; it refuses chains it does not solve. Tell if it turns the end."""
     if model.solver in OWN_SOLVERS:
-        return None
+        return None, False
     bound = (registry or Registry()).bind(SOLVER.name, model.solver)
-    prepare(bound, chain, model.options)
-    return bound
+    return bound, isinstance(prepare(bound, chain, model.options), PoseBatch)
 
 
-def _joint(joint: JointModel) -> Joint:
+def joint_of(joint: JointModel) -> Joint:
+    """Make a joint of its model."""
     return Joint.degrees(
         joint.name,
         joint.offset,
@@ -321,25 +314,3 @@ def _chain_faults(error: ChainError, model: SceneModel, document: Document) -> t
         if joint.name == error.joint:
             path = (*path, index)
     return tuple(document.fault(f.code, f.message, path, hint=f.hint) for f in error.faults)
-
-
-def _goals(
-    model: SceneModel, document: Document, folder: Path
-) -> tuple[tuple[str, ...], Array, list[Fault]]:
-    """Give names, positions (m, 3) and faults of the goals, from the scene or its CSV file."""
-    if isinstance(model.goals, CsvModel):
-        path = folder / model.goals.csv
-        table = read_goals(path, str(path))
-        unreadable = [fault for fault in table.faults if not fault.line]
-        for fault in unreadable:
-            table.faults[table.faults.index(fault)] = document.fault(
-                fault.code, f"{fault.file}: {fault.message}", ("goals", "csv")
-            )
-        return tuple(table.names), np.array(table.positions).reshape(-1, 3), table.faults
-    given = [goal.name for goal in model.goals]
-    faults = list(_twice(given, ("goals",), "goal", document))
-    if not model.goals:
-        message = "at least one goal is needed"
-        faults.append(document.fault("empty", message, ("goals",)))
-    names = tuple(name or str(number) for number, name in enumerate(given, 1))
-    return names, np.array([goal.position for goal in model.goals]).reshape(-1, 3), faults

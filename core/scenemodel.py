@@ -6,19 +6,30 @@ Lengths are in the scene's own unit, angles in degrees, rotations heading, pitch
 import re
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, WithJsonSchema
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
+from limbik.core.goalturn import matrix_turn, quaternion_to_hpb
 from limbik.core.pole import PoleRotor, Preset
+from limbik.core.rotation import Array
 from limbik.core.settings import Model, Settings
-from limbik.core.trajectorymodel import TrajectoryModel
+from limbik.core.trajectorymodel import Four, Matrix, TrajectoryModel
 from limbik.core.wording import found_words
 
 FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
-def _version(value: Any) -> Any:
+def check_version(value: Any) -> Any:
     """Refuse true, which Python takes for 1."""
     if isinstance(value, bool):
         message = "must be 1, not {found}"
@@ -117,17 +128,61 @@ class ChainModel(Model):
 
 
 class GoalModel(Model):
-    """Where the end shall go."""
+    """Where the end shall go, and how it shall be turned there."""
 
     name: Annotated[Name | None, Field(description="absent = its number, from 1")] = None
-    position: Annotated[Place, Field(description="in the world [length]")]
+    position: Annotated[
+        Place | None, Field(description="in the world [length]; a matrix holds it")
+    ] = None
     rotation: Annotated[
         Turn | None,
         Field(
-            description="in the world, HPB [deg]; turns the pole rotor of the 2D solver, "
-            "and the end by the option end_orientation"
+            description="in the world, HPB [deg]; for pose goals, 2D pole rotors "
+            "and the option end_orientation"
         ),
     ] = None
+    quaternion: Annotated[Four | None, Field(description="w, x, y, z, instead of a rotation")] = (
+        None
+    )
+    matrix: Annotated[
+        Matrix | None, Field(description="4 x 4, instead of position and rotation")
+    ] = None
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Position in the world [length]."""
+        if self.matrix is None:
+            return self.position or NOWHERE
+        return self.matrix[0][3], self.matrix[1][3], self.matrix[2][3]
+
+    @property
+    def turn_key(self) -> str:
+        """The key that gives the orientation; empty without one."""
+        keys = ("rotation", "quaternion", "matrix")
+        return next((key for key in keys if getattr(self, key) is not None), "")
+
+    @property
+    def turn(self) -> Array | None:
+        """Orientation in the world, HPB [rad]; None without one."""
+        if self.matrix is not None:
+            return matrix_turn(self.matrix)
+        if self.quaternion is not None:
+            return quaternion_to_hpb(self.quaternion)
+        return None if self.rotation is None else np.radians(self.rotation)
+
+    @model_validator(mode="after")
+    def _one_pose(self) -> "GoalModel":
+        given = [n for n in ("rotation", "quaternion", "matrix") if getattr(self, n) is not None]
+        if len(given) > 1:
+            words = {"given": " and ".join(given)}
+            raise PydanticCustomError("choice", "one orientation, not {given}", words)
+        if (self.position is None) == (self.matrix is None):
+            raise PydanticCustomError("choice", "needs a position, or a matrix that holds it")
+        try:
+            _ = self.turn
+        except ValueError as error:
+            raise PydanticCustomError("range", "{why}", {"why": str(error)}) from None
+        return self
 
 
 def _rotor_form(value: Any) -> str:
@@ -155,6 +210,16 @@ class CsvModel(Model):
     csv: Annotated[str, Field(min_length=1, description="path relative to the scene")]
 
 
+class NpzModel(Model):
+    """Goals in an NPZ file, such as `limbik bake` and `limbik trajectory` write."""
+
+    npz: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+    array: Annotated[
+        str | None,
+        Field(min_length=1, description="array of (m, 3) positions; absent = goals or positions"),
+    ] = None
+
+
 class JudgeModel(Model):
     """What a motion is judged by: its goals are a path at a steady rate."""
 
@@ -166,7 +231,9 @@ class JudgeModel(Model):
 
 
 def _goals_form(value: Any) -> str:
-    return "csv" if isinstance(value, dict) else "list"
+    if isinstance(value, dict):
+        return "npz" if "npz" in value else "csv"
+    return "list"
 
 
 def _chosen(value: Any) -> Any:
@@ -177,13 +244,9 @@ def _chosen(value: Any) -> Any:
     raise PydanticCustomError("type", message, {"found": found_words(value)})
 
 
-class SceneModel(Model):
-    """A whole scene file."""
+class SolveModel(Model):
+    """How a chain is solved, and for which goals."""
 
-    limbik: Annotated[
-        Literal[1], BeforeValidator(_version), Field(description="version of the format")
-    ]
-    chain: ChainModel
     solver: Annotated[
         Any, AfterValidator(_chosen), Field(description="name of the solver, or {use: name, ...}")
     ] = "3d"
@@ -197,10 +260,28 @@ class SceneModel(Model):
         bool, Field(description="solve the goals as a path, each from the pose before it")
     ] = False
     judge: Annotated[JudgeModel | None, Field(description="thresholds for `limbik judge`")] = None
+    axes: Annotated[
+        Literal["limbik", "y-up", "z-up"],
+        Field(
+            description="axes the positions of goals and pole are given in: limbik's, or "
+            "right-handed with Y up as clips have them, or with Z up as robots have them"
+        ),
+    ] = "limbik"
+    goals: Annotated[
+        Annotated[list[GoalModel], Tag("list")]
+        | Annotated[CsvModel, Tag("csv")]
+        | Annotated[NpzModel, Tag("npz")],
+        Discriminator(_goals_form),
+    ]
+
+
+class SceneModel(SolveModel):
+    """A whole scene file."""
+
+    limbik: Annotated[
+        Literal[1], BeforeValidator(check_version), Field(description="version of the format")
+    ]
+    chain: ChainModel
     trajectory: Annotated[
         TrajectoryModel | None, Field(description="key points and moves between them")
     ] = None
-    goals: Annotated[
-        Annotated[list[GoalModel], Tag("list")] | Annotated[CsvModel, Tag("csv")],
-        Discriminator(_goals_form),
-    ]

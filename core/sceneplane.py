@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 
 from limbik.core.errors import Fault
-from limbik.core.scenemodel import CsvModel, SceneModel
+from limbik.core.scenemodel import SolveModel
 from limbik.core.settings import misfits_in_2d
 from limbik.core.yamlfile import Document, KeyPath
 
 
-def solver_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
+def solver_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     """Check that a pole is there for the 2D solver and only for it, and no option of the other."""
     if model.solver != "2d":
         if model.pole is not None:
@@ -23,10 +23,10 @@ def solver_faults(model: SceneModel, document: Document) -> Iterator[Fault]:
     for key, code, message in misfits_in_2d(model.options):
         place: KeyPath = ("options", key)
         yield document.fault(code, message, place, at_key=code == "solver")
-    if isinstance(model.goals, CsvModel) or (model.pole is not None and model.pole.rotor):
+    if not isinstance(model.goals, list) or (model.pole is not None and model.pole.rotor):
         return
     for number, goal in enumerate(model.goals):
-        if goal.rotation is not None and model.pole is not None:
+        if goal.turn is not None and model.pole is not None:
             message = "nothing turns with this goal; it moves a pole rotor"
             hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
-            yield document.fault("solver", message, ("goals", number, "rotation"), hint=hint)
+            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)

@@ -1,12 +1,16 @@
 """The JSON Schema of scenes, for editors: models, strategies and inputs there are (L-03)."""
 
+from collections.abc import Mapping
 from enum import IntEnum
 from typing import Any
 
-from limbik.core.formats import SceneInput
+from pydantic.json_schema import models_json_schema
+
+from limbik.core.bodymodel import BodyModel
 from limbik.core.params import member_name
 from limbik.core.registry import Registry
 from limbik.core.scenemodel import SceneModel
+from limbik.core.settings import Model
 from limbik.core.slots import LIMIT, OPTIONS, SOLVER
 from limbik.core.strategy import Parameter, Strategy, layout
 from limbik.core.whole import OWN_SOLVERS
@@ -22,9 +26,8 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
     Args:
         registry: Its strategies and scene inputs become choices.
     """
-    schema: dict[str, Any] = SceneModel.model_json_schema()
-    schema = {"$schema": _DIALECT, **schema, "title": "limbik scene"}
-    definitions = schema["$defs"]
+    _, models = models_json_schema([(m, "validation") for m in (SceneModel, BodyModel)])
+    definitions: dict[str, Any] = models["$defs"]
     options = definitions["Settings"]["properties"]
     for slot in OPTIONS:
         found = registry.strategies(slot)
@@ -35,30 +38,48 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
     solvers = registry.strategies(SOLVER.name).values()
     choice = _choice(SOLVER.name, [found.strategy for found in solvers])
     choice["anyOf"][:0] = [{"const": name} for name in OWN_SOLVERS]
-    schema["properties"][SOLVER.name] |= choice
+    for model in ("SceneModel", "PartModel"):
+        definitions[model]["properties"][SOLVER.name] |= choice
     inputs = list(registry.scene_inputs().values())
-    chains = [schema["properties"]["chain"]]
-    for found_input in inputs:
-        chains.append({"$ref": f"#/$defs/{_take_in(found_input, definitions)}"})
-    schema["properties"]["chain"] = {"anyOf": chains}
-    _need_goals_or_a_clip(schema, [given.name for given in inputs if given.has_goals])
-    return schema
-
-
-def _take_in(given: SceneInput, definitions: dict[str, Any]) -> str:
-    """Add an input's model to the definitions and return its name there."""
-    own: dict[str, Any] = given.model.model_json_schema()
-    definitions |= own.pop("$defs", {})
-    name = f"Chain_{given.name}"
-    definitions[name] = {**own, "description": given.description}
-    return name
-
-
-def _need_goals_or_a_clip(schema: dict[str, Any], clips: list[str]) -> None:
-    """Ask for goals except where the chain's file has them."""
-    schema["required"] = [key for key in schema["required"] if key != "goals"]
+    clips = [given.name for given in inputs if given.has_goals]
+    chains = {given.name: given.model for given in inputs}
+    _take_in("SceneModel", "chain", chains, definitions)
+    _goals_may_be_absent("SceneModel", definitions)
     held = [{"properties": {"chain": {"required": [name]}}} for name in clips]
-    schema["anyOf"] = [{"required": ["goals"]}, *held]
+    goals = [{"required": ["goals"]}, {"required": ["trajectory"]}]
+    definitions["SceneModel"]["anyOf"] = [*goals, *held]
+    skeletons = {given.name: given.skeleton.model for given in inputs if given.skeleton}
+    _take_in("BodyModel", "skeleton", skeletons, definitions)
+    _goals_may_be_absent("PartModel", definitions)
+    each = {"items": {"required": ["goals"]}}
+    held = [{"properties": {"skeleton": {"required": [name]}}} for name in clips]
+    definitions["BodyModel"]["anyOf"] = [{"properties": {"chains": each}}, *held]
+    return {
+        "$schema": _DIALECT,
+        "title": "limbik scene",
+        "if": {"anyOf": [{"required": ["skeleton"]}, {"required": ["chains"]}]},
+        "then": {"$ref": "#/$defs/BodyModel"},
+        "else": {"$ref": "#/$defs/SceneModel"},
+        "$defs": definitions,
+    }
+
+
+def _take_in(
+    model: str, key: str, inputs: Mapping[str, type[Model]], definitions: dict[str, Any]
+) -> None:
+    """Let a key of a model hold what the scene inputs take there, too."""
+    forms = [definitions[model]["properties"][key]]
+    for name, given in inputs.items():
+        own: dict[str, Any] = given.model_json_schema()
+        definitions |= own.pop("$defs", {})
+        definitions[f"{key}_{name}"] = own
+        forms.append({"$ref": f"#/$defs/{key}_{name}"})
+    definitions[model]["properties"][key] = {"anyOf": forms}
+
+
+def _goals_may_be_absent(model: str, definitions: dict[str, Any]) -> None:
+    required = definitions[model]["required"]
+    definitions[model]["required"] = [key for key in required if key != "goals"]
 
 
 def _choice(slot: str, strategies: list[Strategy]) -> dict[str, Any]:

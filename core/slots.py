@@ -138,10 +138,10 @@ def _finish_samples() -> list[Sample]:
     folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
 
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
-        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 32))
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 36))
         chain = (offsets, frozen, place, base, low, high)
         limits = np.zeros(3, np.int64), np.zeros((3, MAX_PARAMS))
-        work = angles, rows, np.zeros(1)
+        work = angles, rows, np.zeros(2)
         return (np.array(goal), 1e-3, 1.8, *chain, *limits, 1, None, *work)
 
     return [
@@ -235,8 +235,14 @@ FINISH = Slot(
         Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
-        Argument("scratch", "matrix", "(n, 32) IN/OUT to work in, of any content", True),
-        Argument("verdict", "vector", "(1,) OUT: 1 if everything it knows was tried, else 0", True),
+        Argument("scratch", "matrix", "(n, 36) IN/OUT to work in, of any content", True),
+        Argument(
+            "verdict",
+            "vector",
+            "(2,) OUT: 1 if all it knows was tried in vain, else 0; "
+            "least distance it found, infinite unless it says [length]",
+            True,
+        ),
     ),
     _finish_samples,
 )

@@ -146,6 +146,9 @@ class Solution:
         status: `Status`, by that distance; (m,) of its numbers for many.
         bend_vector: Unit vector in the world toward which the chain bends, (3,) or (m, 3).
         bend_angle: Bend direction: angle about the bend root's Z from its Y axis [rad] (E-14).
+        nearest: Least distance to the goal that any pose found would have [length], (m,) for many;
+            below `distance` where the finish stays with the fold it is in. None where no other
+            pose is looked for.
         continuity: What the next solve may be given; None for many.
         trace: Every stage's pose, when asked for.
         limits: The joints' own limits, n of them, None for joints with ranges; None if all have.
@@ -161,6 +164,7 @@ class Solution:
     status: Status | NDArray[np.int64]
     bend_vector: Array
     bend_angle: float | Array
+    nearest: float | Array | None = None
     continuity: Continuity | None = None
     trace: tuple[Stage, ...] | None = None
     limits: Limits | None = None
@@ -192,6 +196,7 @@ class Solution:
             "iterations": int(picked["iterations"]),
             "distance": float(picked["distance"]),
             "bend_angle": float(picked["bend_angle"]),
+            "nearest": None if self.nearest is None else float(picked["nearest"]),
             "status": Status(int(picked["status"])),
         }
 

@@ -69,6 +69,26 @@ def checked_turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
     return np.where(absent, np.nan, found)
 
 
+def with_turns(goals: Array, turns: ArrayLike) -> Array:
+    """Return goals and how each is turned in one array, (m, 6)."""
+    given = checked_turns(turns, (None, 3))
+    if len(given) != len(goals):
+        message = f"goal turns: expected {len(goals)}, one a goal, found {len(given)}"
+        raise InputError(message)
+    return np.hstack([goals, given])
+
+
+def checked_memory(values: Array, joints: int) -> Array:
+    """Return a copy of a continuity's numbers for a chain of so many joints."""
+    memory = np.array(values, np.float64, order="C")
+    if memory.shape != (joints + 4, 3):
+        message = f"it is of a chain of {len(memory) - 4} joints, this one has {joints}"
+        raise InputError(f"continuity: {message}")
+    if not np.isfinite(memory).all():
+        raise InputError("continuity: every number must be finite")
+    return memory
+
+
 def _shown(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
 

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import InputError, PluginError
+from limbik.core.errors import PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_options
 from limbik.core.jit import Entry
 from limbik.core.jointlimits import bound_limits, flat_limits
@@ -23,7 +24,14 @@ from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
-from limbik.core.solveinput import Arrays, check_joints, checked, checked_turns
+from limbik.core.solveinput import (
+    Arrays,
+    check_joints,
+    checked,
+    checked_memory,
+    checked_turns,
+    with_turns,
+)
 
 FAILED = 10  # status numbers from here on name the slot whose strategy failed
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
@@ -73,6 +81,33 @@ class Solver:
         """Return a solver of the same kind with some settings changed."""
         return Solver(self.chain, self._altered(options), self.registry)
 
+    def mirrored(self) -> "Solver":
+        """Return the solver of the chain mirrored in the world's YZ plane (M-14).
+
+        It answers mirrored goals with the mirrored poses.
+        """
+        from limbik.core.mirror import mirrored_settings
+
+        settings = mirrored_settings(self.settings, self.strategies)
+        return Solver(self.chain.mirrored(), settings, self.registry)
+
+    def moved(self, position: Array, rotation: Array) -> "Solver":
+        """Return this solver for its chain with the base elsewhere, in a few microseconds.
+
+        Args:
+            position: Where the parent of joint 0 stands in the world, (3,) [length].
+            rotation: Its axes in the world, (3, 3).
+        """
+        self._plugs, self._kernel  # noqa: B018 - made once, for all copies
+        found = copy(self)
+        found.chain = self.chain.moved(position, rotation)
+        body = self._fixed[0]._replace(
+            base_position=np.array(position, np.float64),
+            base_rotation=found.chain.base_rotation,
+        )
+        found._fixed = (body, *self._fixed[1:])
+        return found
+
     def _altered(self, options: dict[str, Any]) -> Settings:
         return Settings(**{**self.settings.model_dump(exclude_unset=True), **options})
 
@@ -113,12 +148,15 @@ class Solver:
             *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
 
-    @staticmethod
-    def _entry() -> Callable[..., int]:
+    def _entry(self) -> Callable[..., int]:
         """The solve of many rows, not compiled yet."""
-        from limbik.core.kernels.solve3d import solve_goals
+        if self.settings.choose is None and not self.settings.end_orientation:
+            from limbik.core.kernels.solve3d import solve_goals
 
-        return solve_goals
+            return solve_goals
+        from limbik.core.kernels.solve_fully import solve_fully
+
+        return solve_fully
 
     def solve(
         self,
@@ -269,12 +307,16 @@ class Solver:
     @property
     def _columns(self) -> int:
         """How many numbers the kernel gives for each goal."""
-        return 7
+        return 8
 
     def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
         """Make the solution of one goal or many; numbers and rows have more to read."""
-        limits = self.limits if any(self.limits) else None
-        return Solution(**fields, limits=limits)
+        nearest = numbers[..., 7]
+        return Solution(
+            **fields,
+            nearest=float(nearest) if numbers.ndim == 1 else nearest,
+            limits=self.limits if any(self.limits) else None,
+        )
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))
@@ -318,27 +360,13 @@ class Solver:
     def _rows(self, goals: Array, turns: ArrayLike | None) -> Array:
         """Return what the kernel takes for each goal: its position, and its turn if it has one."""
         goals = self._goals(goals)
-        if turns is None:
-            return goals
-        given = checked_turns(turns, (None, 3))
-        if len(given) != len(goals):
-            message = f"goal turns: expected {len(goals)}, one a goal, found {len(given)}"
-            raise InputError(message)
-        return np.hstack([goals, given])
+        return goals if turns is None else with_turns(goals, turns)
 
     def _memory(self, continuity: Continuity | None) -> Array:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
         if continuity is None:
             return self._fresh.copy()
-        memory = np.array(continuity.memory, np.float64, order="C")
-        if memory.shape != self._fresh.shape:
-            raise InputError(
-                f"continuity: it is of a chain of {len(memory) - 4} joints, "
-                f"this one has {len(self.chain)}"
-            )
-        if not np.isfinite(memory).all():
-            raise InputError("continuity: every number must be finite")
-        return memory
+        return checked_memory(continuity.memory, len(self.chain))
 
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:

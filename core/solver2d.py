@@ -1,6 +1,7 @@
 """`Solver2D`: a chain that bends in the plane of base, goal and pole (000 §6.2, §7.5)."""
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Final
@@ -93,8 +94,7 @@ class Solver2D(Solver):
         found: Planar = self._fixed[2]
         return found
 
-    @staticmethod
-    def _entry() -> Callable[..., int]:
+    def _entry(self) -> Callable[..., int]:
         from limbik.core.kernels.solve2d import solve_plane_goals
 
         return solve_plane_goals
@@ -210,6 +210,45 @@ class Solver2D(Solver):
                     keeps_shape=ours.keeps_shape, pole_turn=ours.pole_turn, bound=ours.bound
                 )
             )
+        return found
+
+    def mirrored(self) -> "Solver2D":
+        """Return the solver of the mirrored chain, the pole mirrored too; a bound one stays so."""
+        from limbik.core.mirror import mirrored_settings
+
+        x, y, z = self.pole.position
+        found = Solver2D(
+            self.chain.mirrored(),
+            mirrored_settings(self.settings, self.strategies),
+            self.registry,
+            pole=self.pole.model_copy(update={"position": (-x, y, z)}),
+        )
+        ours = self._planar
+        found._fixed = (
+            *found._fixed[:2],
+            found._planar._replace(
+                keeps_shape=ours.keeps_shape, pole_turn=-ours.pole_turn, bound=ours.bound
+            ),
+        )
+        return found
+
+    def moved(self, position: Array, rotation: Array) -> "Solver2D":
+        """Return this solver for its chain with the base elsewhere; the pole stays."""
+        found = super().moved(position, rotation)
+        assert isinstance(found, Solver2D)
+        turn = rotation @ self.chain.base_rotation.T
+        planar = self._planar._replace(
+            rest_direction=np.ascontiguousarray(turn @ self._planar.rest_direction),
+            rest_axis=np.ascontiguousarray(turn @ self._planar.rest_axis),
+        )
+        found._fixed = (*found._fixed[:2], planar)
+        return found
+
+    def with_pole(self, position: Array) -> "Solver2D":
+        """Return this solver with its pole elsewhere, (3,) [length]; the rotor stays."""
+        x, y, z = position.tolist()
+        found = copy(self)
+        found.pole = self.pole.model_copy(update={"position": (x, y, z)})
         return found
 
     def variant(self, planar: Planar, **options: Any) -> "Solver2D":

@@ -1,16 +1,15 @@
 """Solve the goals of a scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
+from limbik.core.posegoals import WholeSolver, solve_turned
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene
-from limbik.core.solution import Continuity, Solution, Status
+from limbik.core.scene import Scene, require_goals
+from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.core.whole import WholeSolution, prepare
+from limbik.core.whole import prepare
 
 
 def solve_scene(
@@ -28,14 +27,13 @@ def solve_scene(
 
     Raises:
         PluginError: A strategy failed.
+        SceneError: The scene has no goals, only a trajectory.
     """
-    if scene.solver is not None:
-        batch = prepare(scene.solver, scene.chain, scene.settings)
-        return list(_singles(batch(scene.goals, scene.follow)))
-    solver = scene_solver(scene, registry)
-    if not trace:
-        found = solve_part(solver, scene, slice(None))
+    require_goals(scene)
+    if scene.solver is not None or not trace:
+        found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]
+    solver = scene_solver(scene, registry)
     solutions: list[Solution] = []
     for row, goal in enumerate(scene.goals):
         before = solutions[-1].continuity if scene.follow and solutions else None
@@ -46,8 +44,34 @@ def solve_scene(
     return solutions
 
 
+def solve_goals(
+    scene: Scene, registry: Registry | None = None, threads: int | None = None
+) -> Solution:
+    """Solve every goal of a scene as `solve_scene` does, into one solution of arrays.
+
+    Args:
+        scene: The scene.
+        registry: Where the strategies are looked up; a new `Registry()` if absent.
+        threads: How many to use where goals do not follow; None for as many as there are cores.
+
+    Returns:
+        A solution with a leading goal axis.
+
+    Raises:
+        PluginError: A strategy failed.
+    """
+    if scene.solver is not None:
+        batch = prepare(scene.solver, scene.chain, scene.settings)
+        return solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)
+    return solve_part(scene_solver(scene, registry), scene, slice(None), threads=threads)
+
+
 def solve_part(
-    solver: Solver, scene: Scene, part: slice, continuity: Continuity | None = None
+    solver: Solver,
+    scene: Scene,
+    part: slice,
+    continuity: Continuity | None = None,
+    threads: int | None = None,
 ) -> Solution:
     """Solve some goals of a scene at once, as a path if the scene says so.
 
@@ -56,6 +80,7 @@ def solve_part(
         scene: The scene.
         part: Which goals.
         continuity: Of the goal before them on a path.
+        threads: As for `solve_goals`.
 
     Returns:
         A solution with a leading goal axis.
@@ -65,7 +90,7 @@ def solve_part(
         asked["goal_turns"] = scene.goal_turns[part]
     if scene.follow:
         return solver.follow(scene.goals[part], continuity=continuity, **asked)
-    return solver.solve_many(scene.goals[part], **asked)
+    return solver.solve_many(scene.goals[part], threads=threads, **asked)
 
 
 def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
@@ -84,25 +109,13 @@ def scene_solver(scene: Scene, registry: Registry | None = None) -> Solver:
     return solver.bind() if scene.bind else solver
 
 
+def single_solver(scene: Scene, registry: Registry | None = None) -> Solver | WholeSolver:
+    """Return whatever solver a scene asks for, to be called goal by goal; see `scene_solver`."""
+    if scene.solver is not None:
+        return WholeSolver(scene.solver, scene.chain, scene.settings)
+    return scene_solver(scene, registry)
+
+
 def are_met(scene: Scene, solutions: Sequence[Solution]) -> bool:
     """Whether every goal is reached; with IK switched off none is pursued."""
     return not scene.settings.ik or all(solution.reached for solution in solutions)
-
-
-def _singles(many: Solution) -> Iterator[Solution]:
-    """Take a solution with a leading goal axis apart."""
-    for k in range(len(many.goal)):
-        notes = many.notes[k] if isinstance(many, WholeSolution) else ""
-        yield WholeSolution(
-            many.chain,
-            many.goal[k],
-            many.angles[k],
-            many.positions[k],
-            many.rotations[k],
-            int(np.asarray(many.iterations)[k]),
-            float(np.asarray(many.distance)[k]),
-            Status(int(np.asarray(many.status)[k])),
-            many.bend_vector[k],
-            float(np.asarray(many.bend_angle)[k]),
-            notes=notes,
-        )

@@ -30,6 +30,14 @@ class Degrees:
     """
 
 
+class Sided:
+    """Marks a parameter that changes its sign in the mirror image; of three numbers the first (x).
+
+    Example:
+        `angle: Annotated[float, Field(description="to the left [deg]"), Degrees, Sided] = 0.0`
+    """
+
+
 class NoParams(NamedTuple):
     """The parameters of a strategy that has none."""
 
@@ -72,6 +80,7 @@ class Parameter:
         degrees: Whether the value is given in degrees.
         default: The default, or `...` if the field must be given.
         constraints: Metadata of the annotation (pydantic's Field and the like).
+        sided: Whether it changes its sign in the mirror image.
     """
 
     name: str
@@ -80,6 +89,7 @@ class Parameter:
     degrees: bool
     default: Any
     constraints: tuple[Any, ...]
+    sided: bool = False
 
     @property
     def count(self) -> int:
@@ -114,9 +124,11 @@ def _read(params: Any) -> tuple[Parameter, ...]:
     for name in params._fields:
         plain, *constraints = _annotation(hints[name])
         kind, size = _kind(name, plain)
-        degrees = any(c is Degrees or isinstance(c, Degrees) for c in constraints)
+        degrees, sided = (
+            any(c is mark or isinstance(c, mark) for c in constraints) for mark in (Degrees, Sided)
+        )
         default = defaults.get(name, ...)
-        fields.append(Parameter(name, kind, size, degrees, default, tuple(constraints)))
+        fields.append(Parameter(name, kind, size, degrees, default, tuple(constraints), sided))
     if (total := sum(field.count for field in fields)) > MAX_PARAMS:
         raise TypeError(f"{params.__name__} takes {total} numbers, at most {MAX_PARAMS} fit")
     return tuple(fields)
@@ -180,6 +192,20 @@ def unflatten(params: type[Any], flat: NDArray[np.float64]) -> Any:
         values.append(tuple(numbers) if field.size else numbers[0])
         place += field.count
     return params(*values)
+
+
+def mirrored(values: Any) -> dict[str, Any]:
+    """Return the parameters of the mirror image by name.
+
+    Args:
+        values: Instance of a params class.
+    """
+    image: dict[str, Any] = values._asdict()
+    for field in layout(type(values)):
+        if field.sided:
+            value = image[field.name]
+            image[field.name] = (-value[0], *value[1:]) if field.size else -value
+    return image
 
 
 def _number(kind: type[Any], value: float) -> Any:

@@ -54,7 +54,10 @@ class PointModel(Model):
     ] = None
     joints: Annotated[
         dict[str, Vector] | None,
-        Field(description="HPB by joint [deg], others at rest; gives the position too"),
+        Field(
+            description="HPB by joint [deg], others at rest; gives the position too, and as the "
+            "start the pose that pose goals set out from"
+        ),
     ] = None
 
     @model_validator(mode="after")

@@ -2,8 +2,9 @@
 
 Such a strategy's `kernel` is no compiled step but a Python function `(chain, settings, params)`,
 params in radians. It looks at the chain, raises `ChainError` if it cannot solve this kind, and
-returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis. It must be quick
-and load no compiler: `limbik check` calls it.
+returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis, or a
+`limbik.core.posegoals.PoseBatch` if it turns the end to an orientation too. It must be quick and
+load no compiler: `limbik check` calls it.
 """
 
 from collections.abc import Callable, Sequence

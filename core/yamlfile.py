@@ -8,7 +8,7 @@ column, so that a later check can point at it.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,23 +38,32 @@ class Document:
         content: Dictionaries with text keys, lists, text, numbers, truth values, None.
         values: Line and column of every value, by its path.
         keys: Line and column of every key of a mapping, by the path of its value.
+        at: Where the content stands in the file; paths given to the methods start there.
     """
 
     name: str
     content: Any
     values: dict[KeyPath, Position]
     keys: dict[KeyPath, Position]
+    at: KeyPath = ()
+
+    def under(self, path: Sequence[str | int]) -> "Document":
+        """Return the part of the document at a path, as a document with places of its own."""
+        content = self.content
+        for part in path:
+            content = content[part]
+        return replace(self, content=content, at=(*self.at, *path))
 
     def position(self, path: Sequence[str | int]) -> Position:
         """Line and column of a value, from 1; of the nearest parent if the path leads nowhere."""
-        place = tuple(path)
+        place = (*self.at, *path)
         while place not in self.values and place:
             place = place[:-1]
         return self.values.get(place, (1, 1))
 
     def key_position(self, path: Sequence[str | int]) -> Position:
         """Line and column of the key of a value; of the value itself if it has no key."""
-        return self.keys.get(tuple(path)) or self.position(path)
+        return self.keys.get((*self.at, *path)) or self.position(path)
 
     def fault(
         self,
@@ -67,7 +76,8 @@ class Document:
     ) -> Fault:
         """Make a fault that points at a value of this document, or at its key."""
         line, column = self.key_position(path) if at_key else self.position(path)
-        return Fault(code, message, key_text(path), self.name, line, column, hint)
+        key = key_text((*self.at, *path))
+        return Fault(code, message, key, self.name, line, column, hint)
 
 
 def read_yaml(source: str | bytes, name: str) -> Document:

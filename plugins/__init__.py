@@ -16,8 +16,8 @@ BUILT_IN = (
     "limbik.plugins.limits.cone",
     "limbik.plugins.finish.none",
     "limbik.plugins.finish.newton",
-    "limbik.plugins.formats.urdf_chain",
-    "limbik.plugins.formats.bvh_chain",
+    "limbik.plugins.formats.urdf_input",
+    "limbik.plugins.formats.bvh_input",
     "limbik.plugins.formats.tables",
     "limbik.plugins.formats.bvh_out",
     "limbik.plugins.formats.glb",
@@ -25,5 +25,6 @@ BUILT_IN = (
     "limbik.plugins.solvers.fabrik.solver",
     "limbik.plugins.solvers.lambda_leg.solver",
     "limbik.plugins.solvers.planar.solver",
+    "limbik.plugins.solvers.refine.solver",
 )
 """Modules the registry loads first; a new one is added here."""

@@ -5,17 +5,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from limbik.core.body import solve_body
+from limbik.core.bodyscene import read_body
 from limbik.core.pose import forward_kinematics
+from limbik.core.posegoals import PoseSolution
 from limbik.core.registry import Registry
 from limbik.core.scene import read_scene
 from limbik.core.solving import solve_scene
 from limbik.plugins.output.templates import TEMPLATES
 
-CONFIGS = sorted((Path(__file__).parents[1] / "configs").glob("*.yaml"))
+ALL = sorted((Path(__file__).parents[1] / "configs").glob("*.yaml"))
+BODIES = [path for path in ALL if "\nskeleton:" in path.read_text(encoding="utf-8")]
+CONFIGS = [path for path in ALL if path not in BODIES]
 
 
 def test_every_template_is_a_shipped_scene() -> None:
-    assert sorted(path.stem for path in CONFIGS) == sorted(TEMPLATES)
+    assert sorted(path.stem for path in ALL) == sorted(TEMPLATES)
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
@@ -27,10 +32,32 @@ def test_every_goal_is_reached_by_the_pose_itself_and_within_limits(path: Path) 
 
     assert len(solutions) == 10
     for name, goal, solution in zip(scene.goal_names, scene.goals, solutions, strict=True):
-        positions, _ = forward_kinematics(scene.chain, solution.angles)
+        positions, rotations = forward_kinematics(scene.chain, solution.angles)
+        if isinstance(solution, PoseSolution) and np.isfinite(solution.goal_rotation).all():
+            assert np.abs(rotations[-1] - solution.goal_rotation).max() < 1e-6, name
         assert np.linalg.norm(positions[-1] - goal) <= scene.settings.tolerance, name
         assert (solution.angles >= scene.chain.low - 1e-9).all(), name
         assert (solution.angles <= scene.chain.high + 1e-9).all(), name
+
+
+@pytest.mark.parametrize("path", BODIES, ids=lambda path: path.stem)
+def test_every_chain_of_a_body_is_on_its_goal_in_every_frame(path: Path) -> None:
+    """The angles of all chains together, put into the skeleton, end on the goals."""
+    registry = Registry(third_party=False)
+    scene = read_body(path, registry)
+    found = solve_body(scene, registry)
+
+    assert {len(part.scene.goals) for part in scene.parts} == {len(found)}
+    for part in scene.parts:
+        for row, body in enumerate(found):
+            solution = body.solutions[part.name]
+            goal = part.scene.goals[row]
+            if part.frame >= 0:
+                goal = body.positions[part.frame] + body.rotations[part.frame] @ goal
+            gap = np.linalg.norm(body.positions[part.limb.at[-1]] - goal)
+            assert gap <= part.scene.settings.tolerance, (part.name, scene.frame_names[row])
+            assert (solution.angles >= part.scene.chain.low - 1e-9).all(), part.name
+            assert (solution.angles <= part.scene.chain.high + 1e-9).all(), part.name
 
 
 def test_the_zero_poses_are_the_ones_the_comments_describe() -> None:

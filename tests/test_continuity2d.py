@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from limbik.core.chain import Chain, Joint
+from limbik.core.motion import turn_between
 from limbik.core.rotation import hpb_to_matrix
 from limbik.core.solver2d import Solver2D
-from limbik.plugins.judging.run import turn_between
 from limbik.tests.limbs import REGISTRY, Array
 
 COUNT = 3000

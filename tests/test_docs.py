@@ -7,7 +7,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = ("docs/readings.md", "docs/limits.md")
+PAGES = (
+    "docs/readings.md",
+    "docs/limits.md",
+    "docs/experiments.md",
+    "docs/pose-goals.md",
+    "docs/trajectories.md",
+)
 NAMED = re.compile(r"`([\w/.-]+\.py)(?:::(\w+))?`")
 IDS = (
     [f"A-{k:02}" for k in range(1, 7)]
@@ -18,7 +24,8 @@ IDS = (
     + ["E-02A", "E-02B", "E-02C", "E-03A", "E-03B", "E-03C"]
     + [f"E-11{letter}" for letter in "ABCDEFGHIJKLM"]
     + [f"K-{k:02}" for k in range(1, 9)]
-    + ["F-01", "M-02", "M-05", "M-08", "M-09"]
+    + [f"J-{k:02}" for k in range(1, 9)]
+    + ["F-01", "M-02", "M-05", "M-08", "M-09", "M-13"]
 )
 
 
@@ -39,8 +46,8 @@ def test_every_file_and_name_of_a_page_exists(page: str) -> None:
 
 
 def rows() -> dict[str, str]:
-    """Return the rows of the page of readings by id."""
-    text = (ROOT / "docs/readings.md").read_text(encoding="utf-8")
+    """Return the rows of all pages by id."""
+    text = "\n".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES)
     found = re.findall(r"^\| ([A-Z]-\d\d[A-Z]?) \|(.*)$", text, re.MULTILINE)
     assert len(found) == len(dict(found)), "an id stands twice"
     return dict(found)
@@ -60,7 +67,7 @@ def test_no_row_is_unknown() -> None:
 
 
 def test_every_benchmark_a_page_names_can_be_run() -> None:
-    text = (ROOT / "docs/limits.md").read_text(encoding="utf-8")
-    commands = re.findall(r"^    python (\S+)", text, re.MULTILINE)
-    assert commands
+    texts = [(ROOT / page).read_text(encoding="utf-8") for page in PAGES[1:]]
+    commands = re.findall(r"^    python (\S+)", "\n".join(texts), re.MULTILINE)
+    assert len(commands) >= len(PAGES[1:])
     assert all((ROOT / command).exists() for command in commands)

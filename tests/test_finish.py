@@ -3,103 +3,11 @@
 import numpy as np
 import pytest
 
-from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
-from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.core.solver import Solver
-
-FIXED = (0.0, 0.0)
-
-
-def ball(joints: int) -> Chain:
-    return Chain([Joint(f"j{i}", (0, 0, 1.0 if i else 0.0)) for i in range(joints)])
-
-
-def arm() -> Chain:
-    return Chain(
-        [
-            Joint.degrees("shoulder", heading=(-130, 60), pitch=(-85, 85), bank=(-90, 90)),
-            Joint.degrees("elbow", (0, 0, 30), heading=FIXED, pitch=(0, 145), bank=(-80, 80)),
-            Joint.degrees("wrist", (0, 0, 26), heading=(-30, 30), pitch=(-70, 70), bank=FIXED),
-            Joint.degrees("hand", (0, 0, 18), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def leg() -> Chain:
-    turned = (0, -90, 0)
-    return Chain(
-        [
-            Joint.degrees("hip", (10, 0, 0), turned, (0, 0, 0), (-40, 40), (-30, 110), (-45, 45)),
-            Joint.degrees("knee", (0, 0, 42), heading=FIXED, pitch=(-145, 0), bank=FIXED),
-            Joint.degrees("ankle", (0, 0, 40), heading=FIXED, pitch=(-40, 50), bank=(-20, 20)),
-            Joint.degrees("toe", (0, 0, 16), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def six_hinges() -> Chain:
-    def roll(name: str, along: float, most: float) -> Joint:
-        return Joint.degrees(name, (0, 0, along), heading=FIXED, pitch=FIXED, bank=(-most, most))
-
-    def bend(name: str, along: float, low: float, high: float) -> Joint:
-        return Joint.degrees(name, (0, 0, along), heading=FIXED, pitch=(low, high), bank=FIXED)
-
-    return Chain(
-        [
-            roll("base", 0, 170),
-            bend("shoulder", 40, -90, 110),
-            bend("elbow", 45, -150, 60),
-            roll("forearm", 20, 180),
-            bend("wrist", 22, -115, 115),
-            roll("flange", 8, 180),
-            Joint.degrees("tool", (0, 5, 8), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def spine(joints: int) -> Chain:
-    bent = (-25, 25)
-    return Chain(
-        [
-            Joint.degrees(f"v{i}", (0, 0, float(i > 0)), heading=bent, pitch=bent, bank=bent)
-            for i in range(joints)
-        ]
-    )
-
-
-def planar(links: int, low: float, high: float) -> Chain:
-    joints = [
-        Joint.degrees(f"j{i}", (0, 0, float(i > 0)), heading=FIXED, pitch=(low, high), bank=FIXED)
-        for i in range(links)
-    ]
-    end = Joint.degrees("end", (0, 0, 1), heading=FIXED, pitch=FIXED, bank=FIXED)
-    return Chain([*joints, end])
-
-
-CHAINS = {
-    "ball3": ball(3),
-    "ball4": ball(4),
-    "ball7": ball(7),
-    "ball28": ball(28),
-    "arm": arm(),
-    "leg": leg(),
-    "six hinges": six_hinges(),
-    "spine8": spine(8),
-    "spine24": spine(24),
-    "planar3": planar(3, 0, 120),
-    "planar4": planar(4, 10, 100),
-}
-
-
-def reachable(chain: Chain, count: int, seed: int) -> Array:
-    """Ends of random poses inside the limits, (count, 3)."""
-    low = np.where(np.isfinite(chain.low), chain.low, -np.pi)
-    high = np.where(np.isfinite(chain.high), chain.high, np.pi)
-    random = np.random.default_rng(seed).random((count, len(chain), 3))
-    positions, _ = forward_kinematics(chain, low + (high - low) * random)
-    return np.ascontiguousarray(positions[:, -1])
+from limbik.tests.kinds import CHAINS, arm, ball, leg
+from limbik.tests.limbs import reachable
 
 
 @pytest.mark.parametrize("name", CHAINS)
@@ -160,50 +68,6 @@ def test_held_joints_stay_while_the_finish_works() -> None:
     np.testing.assert_allclose(
         solver.solve(goal).angles[[0, 3]], bare.solve(goal).angles[[0, 3]], atol=1e-9
     )
-
-
-CELL = 0.02  # raster of the reached region; what lies nearer to its border is not decided
-
-
-def region(chain: Chain, steps: int) -> Array:
-    """Cells of the plane that a grid of all poses reaches, their middles, (k, 2)."""
-    moving = np.argwhere(chain.high > chain.low)
-    points = np.zeros((1, 2))
-    turned = np.zeros(1)
-    for joint, axis in moving:
-        # A planar chain: every angle adds to the one before; pitch 0 points along z.
-        grid = np.linspace(chain.low[joint, axis], chain.high[joint, axis], steps)
-        turned = (turned[:, None] + grid).ravel()
-        points = np.repeat(points, steps, axis=0)
-        points = points + np.stack([np.sin(turned), np.cos(turned)], axis=-1)
-    return np.unique(np.round(points / CELL), axis=0) * CELL
-
-
-@pytest.mark.parametrize(("links", "steps"), [(2, 600), (3, 100)])
-@pytest.mark.parametrize(("low", "high"), [(0, 120), (10, 100), (-60, 60)])
-def test_the_status_is_what_brute_force_finds(
-    links: int, steps: int, low: float, high: float
-) -> None:
-    """Goals nearer to the border of the reached region than the raster shows are left out."""
-    chain = planar(links, low, high)
-    angle, radius = np.random.default_rng(links).random((2, 900))
-    angle, radius = 2 * np.pi * angle, (links + 0.5) * np.sqrt(radius)
-    goals = np.stack([np.zeros(900), radius * np.sin(angle), radius * np.cos(angle)], axis=-1)
-    tolerance = 1e-3
-    solution = Solver(chain, tolerance=tolerance).solve_many(goals)
-    status = np.asarray(solution.status)
-    cells = region(chain, steps)
-    nearest = np.array([np.hypot(*(cells - goal[1:]).T).min() for goal in goals])
-    mesh = CELL + links * np.radians(high - low) / (steps - 1) * links / 2
-    out = radius > links + tolerance
-    surely_not = (nearest > tolerance + mesh) & ~out
-
-    assert surely_not.sum() > 100
-    assert not np.isin(status[surely_not], [Status.REACHED]).any()
-    assert (status[out] == Status.OUT_OF_REACH).all()
-    assert (status[surely_not] == Status.BLOCKED).all()
-    # Where the grid comes near a goal, so does the solve.
-    assert np.all(solution.distance <= nearest + CELL)
 
 
 def test_a_goal_out_of_reach_leaves_the_chain_straight_toward_it() -> None:

@@ -9,12 +9,22 @@ import pytest
 from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
+from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import hpb_to_matrix
 from limbik.core.solver import Solver
-from limbik.plugins.judging import curve, limits, mirror, motion, reach, replay, soundness
+from limbik.plugins.judging import (
+    curve,
+    limits,
+    mirror,
+    motion,
+    reach,
+    replay,
+    roundtrip,
+    soundness,
+)
 from limbik.plugins.judging.catalogue import BY_NAME, METRICS
-from limbik.plugins.judging.run import NotJudged, Run, turn_between
+from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import log_jerk
 
 Array = NDArray[np.float64]
@@ -29,6 +39,10 @@ def arm(**elbow: Any) -> Chain:
             Joint("wrist", (0, 0, 0.5)),
         ]
     )
+
+
+def spine() -> Chain:
+    return Chain([Joint(f"s{k}", (0, 0, 0.2 if k else 0.0)) for k in range(6)])
 
 
 def circle(count: int = 61, radius: float = 0.8, seconds: float = 1.0) -> Array:
@@ -138,6 +152,25 @@ def test_curl_and_unevenness_of_known_bends() -> None:
     assert curve.unevenness(even) == pytest.approx(0.0, abs=1e-9)
     assert curve.curl(hooked) == pytest.approx(3.0)
     assert curve.unevenness(hooked) == pytest.approx(np.sqrt(2.0))
+
+
+def test_the_middle_of_an_s_is_found_and_an_arc_has_none() -> None:
+    judged = run(circle(5))
+    for turns, off in (([20.0, 20.0, -20.0, -20.0], 0.0), ([20.0, -20.0, -20.0, -20.0], 0.2)):
+        ways = np.radians(np.cumsum([0.0, *turns]))
+        bones = np.stack([0 * ways, np.sin(ways), np.cos(ways)], axis=1)
+        places = np.concatenate([np.zeros((1, 3)), np.cumsum(bones, axis=0)])[None]
+        bent = replace(judged, solution=replace(judged.solution, positions=places))
+        assert curve.s_shape(bent) == pytest.approx(off, abs=1e-9)
+    assert curve.s_shape(run(circle(5), spine(), initial_bend="uniform-arc")) == 0.5
+
+
+def test_a_round_trip_is_exact_for_what_ik_can_make_and_shows_what_it_cannot() -> None:
+    assert np.degrees(roundtrip.round_trip(run(circle(7)))) < 0.01
+    bent = run(circle(7), spine(), initial_bend="uniform-arc")
+    angles = bent.solution.angles.copy()
+    angles[:, 1, 0] += 0.5
+    assert np.degrees(roundtrip.round_trip(with_angles(bent, angles))) > 1.0
 
 
 def test_a_status_that_is_not_true_is_counted() -> None:

@@ -23,7 +23,9 @@ def modules_in_the_tree() -> set[str]:
     inner = {path for top in INSIDE for path in (ROOT / top).rglob("*.py")}
     top_level = set(ROOT.glob("*.py"))
     configs = {
-        path for end in ("yaml", "csv", "urdf") for path in (ROOT / "configs").rglob(f"*.{end}")
+        path
+        for end in ("yaml", "csv", "urdf", "bvh")
+        for path in (ROOT / "configs").rglob(f"*.{end}")
     }
     files = inner | top_level | configs | {ROOT / "py.typed"}
     return {path.relative_to(ROOT).as_posix() for path in files if path.exists()}

@@ -237,6 +237,6 @@ def test_judge_refuses_a_scene_with_another_solver() -> None:
 def test_the_schema_offers_the_solvers() -> None:
     from limbik.core.schema import scene_schema
 
-    forms = scene_schema(REGISTRY)["properties"]["solver"]["anyOf"]
+    forms = scene_schema(REGISTRY)["$defs"]["SceneModel"]["properties"]["solver"]["anyOf"]
     assert forms[:2] == [{"const": "3d"}, {"const": "2d"}]
     assert {"lambda-leg", "cosine-arm", "planar-fabrik", "fabrik"} <= set(forms[2]["enum"])

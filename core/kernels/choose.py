@@ -80,6 +80,7 @@ def end_and_choose(
         Whether the finish gave finite numbers only, and the stages traced.
     """
     best, share = inf, 0.5
+    said, nearest = 0.0, inf
     candidates = options.candidates + PULLS if options.choose != 0 else 0
     for number in range(-1, candidates):
         pulls = number >= options.candidates
@@ -92,6 +93,7 @@ def end_and_choose(
         reached = _gap(goal, pose) < options.tolerance
         if number < 0:
             stages = record(stages, pose, trace)
+            said, nearest = pose.verdict[0], pose.verdict[1]
             if options.choose == 0 or not reached:
                 return True, stages
             _keep(FOUND, pose)
@@ -104,6 +106,7 @@ def end_and_choose(
             share *= 0.5
             if share < LEAST_PULL:
                 break
+    pose.verdict[0], pose.verdict[1] = said, nearest
     for joint in range(body.offsets.shape[0]):
         set_angles(joint, vector(pose.kept[BEST], joint), pose)
     place_from(0, body, pose)

@@ -1,6 +1,6 @@
 """The stage after CCD: a finish ends the solve at its goal or says that it cannot (M-01)."""
 
-from math import isfinite
+from math import isfinite, isnan
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import place_from, renew_angles, set_angles
@@ -70,7 +70,7 @@ def end_solve(goal: Vector, body: Body, options: Options, plugs: Plugs, pose: Po
             )
         set_angles(joint, vector(pose.angles, joint), pose)
     place_from(0, body, pose)
-    return isfinite(total) and isfinite(pose.verdict[0])
+    return isfinite(total) and isfinite(pose.verdict[0]) and not isnan(pose.verdict[1])
 
 
 @kernel

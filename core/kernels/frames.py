@@ -48,8 +48,8 @@ def new_pose(n: int) -> Pose:
         np.zeros((n, MAX_PARAMS)),
         np.zeros((8, 3)),
         np.zeros((3, n, 3)),
-        np.zeros((n, 32)),
-        np.zeros(1),
+        np.zeros((n, 36)),
+        np.zeros(2),
     )
 
 

@@ -148,9 +148,9 @@ class Pose(NamedTuple):
     kept: Array
     """Angles set aside by the choice of a solution, (3, n, 3) [rad]."""
     finish_rows: Array
-    """What a finish works in, (n, 32)."""
+    """What a finish works in, (n, 36)."""
     verdict: Array
-    """What a finish says, (1,)."""
+    """What a finish says, and the least distance to the goal it found [length], (2,)."""
 
 
 class Bend(NamedTuple):

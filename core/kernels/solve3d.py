@@ -1,13 +1,13 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
-from math import atan2, isnan, nan
+from math import atan2, inf, isnan
+from typing import NamedTuple
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
 from limbik.core.kernels.bend_vector import find_bend_vector, usable
 from limbik.core.kernels.ccd import ccd_round
-from limbik.core.kernels.choose import end_and_choose
-from limbik.core.kernels.finish import status_of
+from limbik.core.kernels.finish import end_solve, status_of
 from limbik.core.kernels.frames import (
     base_rotation,
     clamp_angles,
@@ -21,7 +21,6 @@ from limbik.core.kernels.frames import (
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
 from limbik.core.kernels.limit import limits_failed, load_limits
 from limbik.core.kernels.mix import mixed, wrap_free
-from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -49,7 +48,7 @@ from limbik.core.slots import call_root_control
 FAILED = 10
 
 # Columns of a solve's numbers; the bend vector takes three.
-ITERATIONS, DISTANCE, STATUS, BEND, BEND_ANGLE = 0, 1, 2, 3, 6
+ITERATIONS, DISTANCE, STATUS, BEND, BEND_ANGLE, NEAREST = 0, 1, 2, 3, 6, 7
 
 RENEW_EVERY = 32  # rounds after which free joints' matrices are made from angles again
 
@@ -69,13 +68,16 @@ def solve_goals(
     numbers: Array,
     trace: Array,
 ) -> int:
-    """Solve many goals one after the other.
+    """Solve many goals one after the other, each by the first solution found.
+
+    What few solves ask for is in `limbik.core.kernels.solve_fully`, so that no other waits for it
+    to be compiled.
 
     Args:
         body: The chain, n joints.
         options: Of the solve.
         plugs: Of the solve.
-        goals: (m, 3) [length], world; or (m, 6), then how they are turned, HPB [rad], or NaN.
+        goals: (m, 3) [length], world; further columns are passed over.
         fk: FK offsets, HPB, (n, 3) [rad].
         memory: Continuity, (n + 4, 3): see `limbik.core.solution.Continuity`. Ends as the one
             after the last goal.
@@ -83,14 +85,13 @@ def solve_goals(
         angles: OUT: HPB, (m, n, 3) [rad].
         positions: OUT: (m, n, 3) [length], world.
         rotations: OUT: (m, n, 3, 3), world.
-        numbers: OUT: (m, 7): iterations, distance, status, bend vector, bend angle.
+        numbers: OUT: (m, 8): iterations, distance, status, bend vector, bend angle, nearest.
         trace: OUT: angles of the last goal's stages, (t, n, 3) [rad]; t = 0 for none.
 
     Returns:
         How many stages the trace holds.
     """
-    n = body.offsets.shape[0]
-    pose = new_pose(n)
+    pose = new_pose(body.offsets.shape[0])
     load_limits(plugs, pose)
     kept = memory.copy()
     stages = 0
@@ -98,13 +99,18 @@ def solve_goals(
         if not chained:
             copy_rows(kept, memory)
         goal = vector(goals, row)
-        turn = (nan, nan, nan)
-        if goals.shape[1] > 3:
-            turn = (goals[row, 3], goals[row, 4], goals[row, 5])
-        stages = _solve(goal, turn, body, options, plugs, fk, memory, pose, numbers[row], trace)
+        led = lead(goal, body, options, plugs, fk, memory, pose, trace)
+        failed, stages = led.failed, led.stages
+        if led.onward and plugs.finish != 0:
+            if not end_solve(led.pursued, body, options, plugs, pose):
+                failed = FAILED + 4
+            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            stages = record(stages, pose, trace)
+        settle_pose(body, options, fk, memory, pose)
+        write_numbers(goal, led, failed, options, pose, numbers[row])
         copy_rows(pose.angles, angles[row])
         copy_rows(pose.positions, positions[row])
-        for joint in range(n):
+        for joint in range(pose.world.shape[0]):
             copy_rows(pose.world[joint], rotations[row, joint])
     return stages
 
@@ -117,26 +123,42 @@ def copy_rows(source: Array, out: Array) -> None:
             out[row, place_in_row] = source[row, place_in_row]
 
 
+class Led(NamedTuple):
+    """Where CCD has led a goal's solve."""
+
+    pursued: Vector
+    """What the next stages pursue: the goal, pulled in where there is a soft zone [length]."""
+    bend: Vector
+    """Bend vector, world."""
+    iterations: int
+    """Rounds run, or the stage that was asked for."""
+    failed: int
+    """0, or the status of the strategy that failed."""
+    stages: int
+    """Traced so far."""
+    onward: bool
+    """Whether stages may follow that go on from CCD."""
+
+
 @kernel
-def _solve(
+def lead(
     goal: Vector,
-    turn: Vector,
     body: Body,
     options: Options,
     plugs: Plugs,
     fk: Array,
     memory: Array,
     pose: Pose,
-    numbers: Array,
     trace: Array,
-) -> int:
-    """Take one goal through all stages; return the number of stages traced."""
-    bend_world = (0.0, 0.0, 0.0)
-    pose.verdict[0] = 0.0
+) -> Led:
+    """Take one goal through all stages up to the last round of CCD."""
+    bend_world, pursued = (0.0, 0.0, 0.0), goal
+    pose.verdict[0], pose.verdict[1] = 0.0, inf
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
     stages = record(stages, pose, trace)
+    onward = failed == 0 and options.max_iterations > 0 and not options.full_fk
     if failed == 0 and options.max_iterations > -2 and not options.full_fk:
         iterations = -1
         aim, distance = _aim_pose(goal, body, options, plugs, memory, pose)
@@ -161,17 +183,7 @@ def _solve(
                     iterations, stages = _rounds(pursued, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
-            if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
-                ended, stages = end_and_choose(
-                    pursued, body, options, plugs, memory, pose, trace, stages
-                )
-                if not ended:
-                    failed = FAILED + 4
-            if options.max_iterations > 0 and options.end_orientation > 0.0 and not isnan(turn[0]):
-                orient_end(turn, options.end_orientation, body, pose)
-    _settle_pose(body, options, fk, memory, pose)
-    _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
-    return stages
+    return Led(pursued, bend_world, iterations, failed, stages, onward and failed == 0)
 
 
 @kernel
@@ -336,7 +348,7 @@ def distance_to(goal: Vector, pose: Pose) -> float:
 
 
 @kernel
-def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
+def settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
     """Choose the angles' forms, mix in FK, renew the frames from the angles, keep the pose."""
     known = memory[3, 0] > 0.0
     mix = 1.0 if options.full_fk else options.fk_mix
@@ -356,25 +368,20 @@ def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
 
 
 @kernel
-def _write_numbers(
-    goal: Vector,
-    bend_world: Vector,
-    iterations: int,
-    failed: int,
-    options: Options,
-    pose: Pose,
-    numbers: Array,
+def write_numbers(
+    goal: Vector, led: Led, failed: int, options: Options, pose: Pose, numbers: Array
 ) -> None:
-    """Write iterations, distance, status and bend direction of a solve into numbers (7,)."""
-    if limits_failed(pose):
-        failed = FAILED + 5
+    """Write what a solve says beside its pose into numbers (8,)."""
     distance = distance_to(goal, pose)
-    numbers[ITERATIONS] = iterations
+    numbers[ITERATIONS] = led.iterations
     numbers[DISTANCE] = distance
-    if failed != 0:
+    if limits_failed(pose):
+        numbers[STATUS] = FAILED + 5
+    elif failed != 0:
         numbers[STATUS] = failed
     else:
         numbers[STATUS] = status_of(goal, distance, options, pose)
-    numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = bend_world
-    local = rotate_back(matrix(pose.world, options.root), bend_world)
+    numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = led.bend
+    local = rotate_back(matrix(pose.world, options.root), led.bend)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
+    numbers[NEAREST] = min(distance, pose.verdict[1])

@@ -23,7 +23,7 @@ from limbik.core.kernels.rotation import (
     turned,
     unit,
 )
-from limbik.core.strategy import Degrees, Strategy
+from limbik.core.strategy import Degrees, Sided, Strategy
 
 Array = NDArray[np.float64]
 
@@ -38,6 +38,7 @@ class Auto(NamedTuple):
         float,
         Field(ge=-360.0, le=360.0, description="default: from the root's Y about its Z [deg]"),
         Degrees,
+        Sided,
     ] = 0.0
     sensitivity: Annotated[
         float, Field(ge=0.0, le=10.0, description="shortest miss that counts [length], 0 = off")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from limbik.core.hooks import hookimpl
-from limbik.core.strategy import Strategy
+from limbik.core.strategy import Sided, Strategy
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ class Global(NamedTuple):
     """Parameters of `global`."""
 
     direction: Annotated[
-        tuple[float, float, float], Field(description="vector in the world, of any length")
+        tuple[float, float, float], Field(description="vector in the world, of any length"), Sided
     ] = (0.0, 1.0, 0.0)
 
 

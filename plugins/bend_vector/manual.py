@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from limbik.core.hooks import hookimpl
-from limbik.core.strategy import Degrees, Strategy
+from limbik.core.strategy import Degrees, Sided, Strategy
 
 Array = NDArray[np.float64]
 
@@ -21,6 +21,7 @@ class Manual(NamedTuple):
         float,
         Field(ge=-360.0, le=360.0, description="from the root's Y axis about its Z axis [deg]"),
         Degrees,
+        Sided,
     ] = 0.0
     exclude_bank: Annotated[
         bool, Field(description="leave out the bank the root takes in the aim pose")

@@ -1,15 +1,13 @@
 """The command `limbik bake`."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
 from limbik.plugins.commands.common import AsJson, SceneFile, announce_compiling, say_notes
 from limbik.plugins.output.failures import reported
-
-if TYPE_CHECKING:
-    from limbik.core.formats import Bake
 
 
 def bake(
@@ -43,38 +41,59 @@ def bake(
     with reported(as_json):
         from dataclasses import replace
 
-        from limbik.core.baking import bake_scene
+        from limbik.core.baking import bake_body, bake_scene
+        from limbik.core.body import followed
+        from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.registry import Registry
-        from limbik.core.scene import read_scene
-        from limbik.plugins.output.baking import output_for, progress
+        from limbik.plugins.output.baking import body_writer, output_for, progress
         from limbik.plugins.output.files import write_whole
 
         registry = Registry()
         writer = output_for(output, registry)
-        read = read_scene(scene, registry)
-        if follow is not None:
-            read = replace(read, follow=follow)
+        read = read_any(scene, registry)
         say_notes(read)
-        announce_compiling()
-        with progress(len(read.goals)) as report:
-            seconds = None if fps is None else 1.0 / fps
-            baked = bake_scene(
-                read, registry, mirrored=mirrored, frame_time=seconds, progress=report
-            )
-        write_whole(output, writer.write(baked))
-        _show_bake(baked, output, as_json)
-        if read.settings.ik and baked.metrics["reached"] < baked.metrics["frames"]:
+        seconds = None if fps is None else 1.0 / fps
+        if isinstance(read, BodyScene):
+            write_body = body_writer(writer, output)
+            if follow is not None:
+                read = followed(read, follow)
+            announce_compiling()
+            with progress(len(read.frame_names)) as report:
+                body = bake_body(
+                    read, registry, mirrored=mirrored, frame_time=seconds, progress=report
+                )
+            write_whole(output, write_body(body))
+            pursued = [part.scene.settings.ik for part in read.parts]
+            met = _show(body.metrics, pursued, output, as_json)
+        else:
+            if follow is not None:
+                read = replace(read, follow=follow)
+            announce_compiling()
+            with progress(len(read.goals)) as report:
+                baked = bake_scene(
+                    read, registry, mirrored=mirrored, frame_time=seconds, progress=report
+                )
+            write_whole(output, writer.write(baked))
+            met = _show({"": baked.metrics}, [read.settings.ik], output, as_json)
+        if not met:
             raise SystemExit(1)
 
 
-def _show_bake(baked: "Bake", output: Path, as_json: bool) -> None:
+def _show(
+    metrics: dict[str, dict[str, Any]], pursued: Sequence[bool], output: Path, as_json: bool
+) -> bool:
+    """Show what a motion is like, chain by chain; return whether all goals pursued are reached."""
     from limbik.plugins.output.records import to_json
     from limbik.plugins.output.table import print_metrics
 
-    met = baked.metrics["reached"] == baked.metrics["frames"]
+    all_met = (of["reached"] == of["frames"] for of in metrics.values())
+    met = all(met or not ik for met, ik in zip(all_met, pursued, strict=True))
     if as_json:
-        status = "ok" if met or not baked.scene.settings.ik else "unreached"
-        typer.echo(to_json({"status": status, "file": str(output), "metrics": baked.metrics}))
-    else:
-        print_metrics(baked.metrics)
-        typer.echo(f"wrote {output}")
+        shown = metrics.get("", metrics)
+        status = "ok" if met else "unreached"
+        typer.echo(to_json({"status": status, "file": str(output), "metrics": shown}))
+        return met
+    for name, of in metrics.items():
+        print_metrics(of, name)
+    typer.echo(f"wrote {output}")
+    return met

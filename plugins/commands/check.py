@@ -19,9 +19,9 @@ def check(
     limbik check scenes/*.yaml --json
     """
     with reported(as_json):
+        from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.errors import Fault, SceneError
         from limbik.core.registry import Registry
-        from limbik.core.scene import read_scene
         from limbik.plugins.output.records import check_record, to_json
 
         registry = Registry()
@@ -29,11 +29,15 @@ def check(
         sound = []
         for name in scenes:
             try:
-                sound.append(read_scene(name, registry))
+                sound.append(read_any(name, registry))
             except SceneError as error:
                 faults += error.faults
         for read in sound if not as_json else ():
-            counts = f"{len(read.chain)} joints, {len(read.goals)} goals"
+            if isinstance(read, BodyScene):
+                joints = f"{len(read.skeleton.names)} joints in {len(read.parts)} chains"
+                counts = f"{joints}, {len(read.frame_names)} frames"
+            else:
+                counts = f"{len(read.chain)} joints, {len(read.goals)} goals"
             typer.echo(f"{read.document.name}: ok, {counts}")
             say_notes(read)
         if faults:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from limbik.core.bodyscene import BodyScene
     from limbik.core.scene import Scene
 
 SceneFile = Annotated[str, typer.Argument(help="Scene file (YAML), or - for standard input.")]
@@ -19,7 +20,7 @@ def announce_compiling() -> None:
         typer.echo("limbik: compiling machine code, once for this version ...", err=True)
 
 
-def say_notes(scene: "Scene") -> None:
+def say_notes(scene: "Scene | BodyScene") -> None:
     """Write a scene's notes to stderr."""
     for note in scene.notes:
         typer.echo(f"{scene.document.name}: note: {note}", err=True)

@@ -16,18 +16,25 @@ def judge(scene: SceneFile, as_json: AsJson = False) -> None:
     limbik judge walk.yaml --json
     """
     with reported(as_json):
+        from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.registry import Registry
-        from limbik.core.scene import read_scene
         from limbik.plugins.judging import report
         from limbik.plugins.output.records import to_json
 
         registry = Registry()
-        read = read_scene(scene, registry)
+        read = read_any(scene, registry)
         announce_compiling()
-        verdicts = report.judge(read, registry)
-        if as_json:
-            typer.echo(to_json(report.judge_record(read, verdicts)))
+        if isinstance(read, BodyScene):
+            from limbik.plugins.judging.bodies import judge_body
+
+            chains = judge_body(read, registry)
+            record = report.body_record(read, chains)
         else:
-            report.print_verdicts(verdicts)
-        if not report.are_passed(verdicts):
+            chains = {"": report.judge(read, registry)}
+            record = report.judge_record(read, chains[""])
+        if as_json:
+            typer.echo(to_json(record))
+        for name, verdicts in chains.items() if not as_json else ():
+            report.print_verdicts(verdicts, name)
+        if not all(map(report.are_passed, chains.values())):
             raise SystemExit(1)

@@ -21,6 +21,10 @@ def trajectory(
     right_handed: Annotated[
         bool, typer.Option("--right-handed", help="TUM poses in the right-handed Z-up world.")
     ] = False,
+    servo: Annotated[
+        str | None,
+        typer.Option(help="Put servo ticks into the files too: ax-12, or a profile (YAML)."),
+    ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw path, speed and joints to a .png, .svg or .pdf file.")
     ] = None,
@@ -30,6 +34,8 @@ def trajectory(
     limbik trajectory weld.yaml
 
     limbik trajectory weld.yaml --csv weld.csv --plot weld.png
+
+    limbik trajectory weld.yaml --servo servos.yaml --csv ticks.csv
     """
     with reported(as_json):
         from limbik.core.registry import Registry
@@ -38,6 +44,6 @@ def trajectory(
 
         registry = Registry()
         read = read_scene(scene, registry)
-        files = Files(csv, npz, tum, plot, right_handed)
+        files = Files(csv, npz, tum, plot, right_handed, servo)
         if not run_trajectory(read, registry, files, dt, as_json, announce_compiling):
             raise SystemExit(1)

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from limbik.core.jit import kernel
 from limbik.core.kernels.limit import pulled_inside
 from limbik.core.kernels.rotation import (
-    Matrix,
     Vector,
     add,
     column,
@@ -21,26 +20,26 @@ from limbik.core.kernels.rotation import (
     hpb_to_matrix,
     matrix,
     multiply,
+    norm,
     rotate,
     scale,
     subtract,
-    turn_by,
     vector,
 )
 from limbik.core.rotation import Array
 
 # First columns of the scratch rows, three numbers each.
-ANGLES, TRIAL, BEST, START = 0, 3, 6, 9
-POSITION, HEADING, PITCH, BANK = 12, 15, 18, 21
-TURN = 24
-ACTIVE = 27
-MARGIN = 30
-WIDTH = 31
+ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
+POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
+TURN, MARGIN = 30, 33
+WIDTH = 34
 
 
 class Linkage(NamedTuple):
     """A chain of n joints."""
 
+    length: float
+    """Sum of the bones [length]"""
     offsets: Array
     """(n, 3) [length]"""
     frozen: Array
@@ -57,6 +56,12 @@ class Linkage(NamedTuple):
     """Joints' own limits, (n,); 0 = none."""
     limit_params: Array
     """(n, 16)"""
+
+
+@kernel
+def turns(joint: int, axis: int, chain: Linkage) -> bool:
+    """Return whether an axis has a range to turn in."""
+    return bool(chain.high[joint, axis] - chain.low[joint, axis] > 1e-9)
 
 
 @kernel
@@ -106,40 +111,75 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
         write(origin, scratch, joint, POSITION)
         if chain.limits[joint] != 0:
             for axis in range(3):
-                write(column(parent, axis), scratch, joint, HEADING + 3 * axis)
+                write(column(parent, axis), scratch, joint, AXES + 3 * axis)
             continue
         # The elementary rotations have the sense opposite to the right-hand rule.
-        write(scale(column(parent, 1), -1.0), scratch, joint, HEADING)
-        write(scale(rotate(parent, (cos(hpb[0]), 0.0, sin(hpb[0]))), -1.0), scratch, joint, PITCH)
-        write(scale(column(frame, 2), -1.0), scratch, joint, BANK)
+        write(scale(column(parent, 1), -1.0), scratch, joint, AXES)
+        if turns(joint, 1, chain):
+            pitch = rotate(parent, (cos(hpb[0]), 0.0, sin(hpb[0])))
+            write(scale(pitch, -1.0), scratch, joint, AXES + 3)
+        write(scale(column(frame, 2), -1.0), scratch, joint, AXES + 6)
     return origin
 
 
 @kernel
-def pulled(joint: int, angles: Vector, chain: Linkage, scratch: Array) -> Vector:
-    """Return angles pulled into a joint's own limit, which it must have."""
-    return pulled_inside(
-        chain.limits[joint],
-        angles,
-        chain.limit_params[joint],
-        scratch[joint, TURN : TURN + 3],
-        scratch[joint, MARGIN : MARGIN + 1],
-    )
+def pull_inside(angles: int, joint: int, chain: Linkage, scratch: Array) -> None:
+    """Pull the angles of a column into a joint's own limit, if it has one."""
+    if chain.limits[joint] != 0:
+        pulled_row(angles, joint, chain.limits[joint], chain.limit_params[joint], scratch)
 
 
 @kernel
-def turned_by(step: Vector, joint: int, scratch: Array) -> Matrix:
-    """Return the rotation of a joint's angles turned on by a rotation vector [rad]."""
-    return multiply(turn_by(step), hpb_to_matrix(read(scratch, joint, ANGLES)))
+def pulled_row(angles: int, joint: int, limit: int, params: Array, scratch: Array) -> None:
+    """Pull the angles of a column into a limit.
+
+    Args:
+        angles: First column of the angles [rad].
+        joint: Whose row it is.
+        limit: The joint's own limit.
+        params: Of the limit, (16,).
+        scratch: (n, WIDTH).
+    """
+    turn, margin = scratch[joint, TURN : TURN + 3], scratch[joint, MARGIN : MARGIN + 1]
+    found = pulled_inside(limit, read(scratch, joint, angles), params, turn, margin)
+    write(found, scratch, joint, angles)
+
+
+@kernel
+def beyond_reach(goal: Vector, chain: Linkage, scratch: Array) -> float:
+    """Return how far a goal lies beyond all bones that can turn, stretched toward it [length].
+
+    Args:
+        goal: World [length].
+        chain: The chain.
+        scratch: (n, WIDTH), its positions found.
+    """
+    reach, distance = 0.0, 0.0
+    for joint in range(chain.offsets.shape[0] - 1, -1, -1):
+        if turns(joint, 0, chain) or turns(joint, 1, chain) or turns(joint, 2, chain):
+            distance = norm(subtract(goal, read(scratch, joint, POSITION))) - reach
+        reach += norm(vector(chain.offsets, joint))
+    return distance
 
 
 @kernel
 def axis_of(joint: int, axis: int, scratch: Array) -> Vector:
     """Return a turning axis of a joint: 0 heading, 1 pitch, 2 bank."""
-    return read(scratch, joint, HEADING + 3 * axis)
+    return read(scratch, joint, AXES + 3 * axis)
 
 
 @kernel
-def motion(joint: int, axis: int, end: Vector, scratch: Array) -> Vector:
-    """Return how the end moves as one axis turns [length/rad]."""
-    return cross(axis_of(joint, axis, scratch), subtract(end, read(scratch, joint, POSITION)))
+def find_motions(end: Vector, chain: Linkage, scratch: Array) -> None:
+    """Put in place of every turning axis how it moves the end [length/rad]."""
+    for joint in range(chain.offsets.shape[0]):
+        arm = subtract(end, read(scratch, joint, POSITION))
+        for axis in range(3):
+            if turns(joint, axis, chain):
+                moves = cross(axis_of(joint, axis, scratch), arm)
+                write(moves, scratch, joint, AXES + 3 * axis)
+
+
+@kernel
+def motion(joint: int, axis: int, scratch: Array) -> Vector:
+    """Return how the end moves as one axis turns, after `find_motions` [length/rad]."""
+    return read(scratch, joint, AXES + 3 * axis)

@@ -1,13 +1,19 @@
-"""The default finish: a limited Newton descent, with retries from elsewhere when limits block.
+"""The default finish: a limited Newton descent, with other folds of the chain when limits block.
 
 Our own design, beyond the source (DECISIONS, "one more stage"). The descent starts from the CCD
-pose, so where that is near the goal it only closes the gap. Where limits stop it, other folds of
-the chain are tried in a fixed order: mirrored inside the ranges, the ranges' middles, then spread
-evenly over the ranges. The first that reaches the goal is the answer; if none does, the nearest.
+pose, so where that is near the goal it only closes the gap. Where limits stop it, three things
+follow in a fixed order:
+
+* The pose is pushed a little off where it stands and descends again. A limb pressed together in
+  a plane buckles out of it so, always to the same side.
+* Other folds are tried: the mirrored one, the ranges' middles, then starts spread over the ranges.
+  The first that reaches the goal is the answer; one that does not only if it is nearer by far.
+* What was found settles next to the CCD pose, so that goals near each other get
+  poses near each other, whichever start led there.
 """
 
 from collections.abc import Iterable
-from math import inf, pi
+from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -16,28 +22,41 @@ from pydantic import Field
 
 from limbik.core.hooks import hookimpl
 from limbik.core.jit import kernel
-from limbik.core.kernels.rotation import Vector, wrap_angle
+from limbik.core.kernels.rotation import Vector
 from limbik.core.strategy import Strategy
 from limbik.plugins.finish.descent import descend
 from limbik.plugins.finish.linkage import (
     ANGLES,
     BEST,
-    START,
+    HOME,
     Linkage,
+    beyond_reach,
     copy_columns,
-    pulled,
-    read,
+    end_at,
     write,
 )
+from limbik.plugins.finish.settling import settle
+from limbik.plugins.finish.starts import off_home, other_fold
 from limbik.plugins.finish.sweep import sweep
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-
 FULL_EFFORT_JOINTS = 8  # chains up to this long get all retries
 LEAST_RETRIES = 4
-STEADINESS = 0.002  # share of the length by which a later start must be nearer
+OUT_RETRIES = 40  # for goals that no fold reaches, limits or not
+NEARER_BY_FAR = 0.007  # share of the length by which another fold that misses too must be nearer
+NEARER = 1e-5  # the same for the fold it is in
+COARSE = 1e-3
+THOROUGH = 1e-9  # a step that gains a smaller share of the distance is the last
+IMPATIENT = 0.02  # the same on the way from a start that may lead nowhere
+
+
+class Fold(IntEnum):
+    """Which folds may be the answer: any that reaches, or only the one CCD has found."""
+
+    ANY = 0
+    HOME = 1
 
 
 class Newton(NamedTuple):
@@ -48,6 +67,9 @@ class Newton(NamedTuple):
     ] = 1e-9
     steps: Annotated[int, Field(ge=1, le=1000, description="most steps of a descent")] = 40
     retries: Annotated[int, Field(ge=0, le=10000, description="most other starts")] = 160
+    fold: Annotated[
+        Fold, Field(description="any that reaches, or home: stay with the fold of the CCD pose")
+    ] = Fold.ANY
 
 
 def newton(
@@ -69,23 +91,26 @@ def newton(
     verdict: Array,
 ) -> None:
     """End a solve at its goal within the limits, or as near as there is a way to."""
-    body = (offsets, frozen, base_position, base_rotation, low, high)
-    chain = Linkage(*body, limits, limit_params)
+    base = (base_position, base_rotation)
+    chain = Linkage(length, offsets, frozen, *base, low, high, limits, limit_params)
     point = (goal[0], goal[1], goal[2])
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):
         write((angles[joint, 0], angles[joint, 1], angles[joint, 2]), scratch, joint, ANGLES)
-    copy_columns(ANGLES, START, scratch)
-    nearest = descend(point, aimed, params.steps, chain, scratch)
+    copy_columns(ANGLES, HOME, scratch)
+    nearest = descend(point, aimed, params.steps, COARSE, chain, scratch)
     copy_columns(ANGLES, BEST, scratch)
-    verdict[0] = 0.0
     if nearest >= tolerance:
-        retries = _affordable(params.retries, angles.shape[0]) if reachable else 2
-        margin = STEADINESS * length
-        nearest = _search(
-            point, aimed, tolerance, margin, nearest, retries, params.steps, chain, scratch
-        )
-        verdict[0] = 1.0
+        nearest = _buckle(point, aimed, tolerance, nearest, params.steps, chain, scratch)
+    if nearest >= tolerance:
+        retries = _affordable(params.retries, angles.shape[0])
+        if not reachable:
+            straight = nearest <= beyond_reach(point, chain, scratch) + NEARER * length
+            retries = 0 if straight else min(retries, OUT_RETRIES)
+        nearest = _search(point, aimed, tolerance, nearest, retries, params, chain, scratch)
+    tried = params.retries > 0 or not reachable
+    verdict[0] = 1.0 if nearest >= tolerance and tried else 0.0
+    verdict[1] = nearest
     for joint in range(angles.shape[0]):
         for axis in range(3):
             angles[joint, axis] = scratch[joint, BEST + axis]
@@ -101,60 +126,81 @@ def _affordable(retries: int, joints: int) -> int:
 
 
 @kernel
-def _search(
+def _buckle(
     goal: Vector,
     aimed: float,
     tolerance: float,
-    margin: float,
     nearest: float,
-    retries: int,
     steps: int,
     chain: Linkage,
     scratch: Array,
 ) -> float:
-    """Try other starts until one reaches the goal; leave the nearest pose in BEST.
-
-    Where none does, many folds end about equally near. An earlier start stays the answer until a
-    later one is nearer by a margin, so that the pose does not jump between equals along a path.
-    """
-    for attempt in range(retries):
-        _start(attempt, chain, scratch)
-        for _ in range(2):
-            sweep(goal, chain, scratch)
-        distance = descend(goal, aimed, steps, chain, scratch)
-        if distance < tolerance or distance < nearest - margin:
-            nearest = distance
-            copy_columns(ANGLES, BEST, scratch)
-        if nearest < tolerance:
-            break
+    """Leave a pose from which no axis alone leads nearer; return the distance of what is BEST."""
+    off_home(chain, scratch)
+    distance = descend(goal, aimed, steps, IMPATIENT, chain, scratch)
+    if distance < tolerance or distance < nearest - NEARER * chain.length:
+        copy_columns(ANGLES, BEST, scratch)
+        return _settled(goal, aimed, distance, steps, chain, scratch)
     return nearest
 
 
 @kernel
-def _start(attempt: int, chain: Linkage, scratch: Array) -> None:
-    """Write the angles of a start: the pose it began with, its mirror, middles, then spread."""
-    state = attempt * 7919 + 1
-    for joint in range(chain.offsets.shape[0]):
-        for axis in range(3):
-            low, high = chain.low[joint, axis], chain.high[joint, axis]
-            angle = scratch[joint, START + axis]
-            state = (state * 1103515245 + 12345) % 2147483648
-            share = state / 2147483648.0
-            limited = high < inf
-            if attempt == 1:
-                angle = low + high - angle if limited else angle
-            elif attempt == 2:
-                angle = 0.5 * (low + high) if limited else angle
-            elif attempt > 2:
-                angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
-            scratch[joint, ANGLES + axis] = angle
-        if chain.limits[joint] != 0:
-            write(
-                pulled(joint, read(scratch, joint, ANGLES), chain, scratch), scratch, joint, ANGLES
-            )
+def _search(
+    goal: Vector,
+    aimed: float,
+    tolerance: float,
+    nearest: float,
+    retries: int,
+    params: Newton,
+    chain: Linkage,
+    scratch: Array,
+) -> float:
+    """Try other starts until one reaches the goal.
+
+    The best pose comes into BEST, if `params.fold` lets it. Where none reaches, many folds end
+    about equally near: the first stays the answer until another is nearer by far, so that the pose
+    does not jump between equals along a path.
+
+    Returns:
+        The least distance found [length].
+    """
+    found = nearest
+    for attempt in range(retries):
+        other_fold(attempt, chain, scratch)
+        for _ in range(2):
+            sweep(goal, chain, scratch)
+        distance = descend(goal, aimed, params.steps, IMPATIENT, chain, scratch)
+        found = min(found, distance)
+        if params.fold == Fold.ANY and (
+            distance < tolerance or distance < nearest - NEARER_BY_FAR * chain.length
+        ):
+            nearest = distance
+            copy_columns(ANGLES, BEST, scratch)
+        if found < tolerance:
+            break
+    return min(found, _settled(goal, aimed, nearest, params.steps, chain, scratch))
+
+
+@kernel
+def _settled(
+    goal: Vector,
+    aimed: float,
+    nearest: float,
+    steps: int,
+    chain: Linkage,
+    scratch: Array,
+) -> float:
+    """Let the pose in BEST settle, unless its end would stay behind; return its distance."""
+    copy_columns(BEST, ANGLES, scratch)
+    settle(end_at(ANGLES, chain, scratch), chain, scratch)
+    distance = descend(goal, aimed, steps, THOROUGH, chain, scratch)
+    if distance > max(aimed, nearest + NEARER * chain.length):
+        return nearest
+    copy_columns(ANGLES, BEST, scratch)
+    return distance
 
 
 @hookimpl
 def limbik_finishes() -> Iterable[Strategy]:
     """Offer `newton`."""
-    return [Strategy("newton", newton, Newton, "Limited Newton steps, then other starts.")]
+    return [Strategy("newton", newton, Newton, "Limited Newton steps, then other folds.")]

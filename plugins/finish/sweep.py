@@ -13,6 +13,7 @@ from limbik.plugins.finish.linkage import (
     axis_of,
     end_at,
     read,
+    turns,
 )
 
 BLIND = 1e-12  # [length²]; an axis that hardly moves the end is left alone
@@ -33,12 +34,14 @@ def sweep(goal: Vector, chain: Linkage, scratch: Array) -> None:
     for joint in range(chain.offsets.shape[0] - 1, -1, -1):
         if chain.limits[joint] != 0:
             continue  # the descent turns it
+        if chain.limits[joint] != 0:
+            continue  # the descent turns it
         origin = read(scratch, joint, POSITION)
         reach, target = subtract(end, origin), subtract(goal, origin)
         for axis in range(2, -1, -1):
-            low, high = chain.low[joint, axis], chain.high[joint, axis]
-            if not high - low > 1e-9:
+            if not turns(joint, axis, chain):
                 continue
+            low, high = chain.low[joint, axis], chain.high[joint, axis]
             about = axis_of(joint, axis, scratch)
             level = dot(reach, target) - dot(about, reach) * dot(about, target)
             aside = dot(about, cross(reach, target))

@@ -22,10 +22,9 @@ from pydantic_core import PydanticCustomError
 
 from limbik.core.chain import Chain
 from limbik.core.errors import Fault, InputError
-from limbik.core.formats import Body, Inspection, Motion, SceneInput
+from limbik.core.formats import Body, Inspection, Motion
 from limbik.core.frames import Y_UP
-from limbik.core.hooks import hookimpl
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.settings import Model
 from limbik.core.wording import found_words, near_match
 from limbik.plugins.formats.bvh import BvhJoint, Clip, read_bvh
@@ -43,12 +42,10 @@ def _two(value: Any) -> Any:
     raise PydanticCustomError("type", message, {"found": found_words(value)})
 
 
-class BvhModel(Model):
-    """A chain of a motion clip."""
+class FramesModel(Model):
+    """A motion clip, and which of its frames."""
 
     bvh: Annotated[str, Field(min_length=1, description="path relative to the scene")]
-    base: Annotated[str, Field(min_length=1, description="joint the chain starts with")]
-    end: Annotated[str, Field(min_length=1, description="joint that follows its path in the clip")]
     scale: Annotated[
         float, Field(gt=0.0, le=1e6, description="scene lengths a length of the clip [-]")
     ] = 1.0
@@ -58,6 +55,13 @@ class BvhModel(Model):
         Field(description="first and last frame, counted from 0; absent = all"),
     ] = None
     every: Annotated[int, Field(ge=1, description="take every so manieth frame")] = 1
+
+
+class BvhModel(FramesModel):
+    """A chain of a motion clip."""
+
+    base: Annotated[str, Field(min_length=1, description="joint the chain starts with")]
+    end: Annotated[str, Field(min_length=1, description="joint that follows its path in the clip")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +98,7 @@ class ClipBody(Body):
             columns = list(joint.columns[len(joint.moves) :])
             slot = self.join.slots[k]
             if slot == FREE:
-                turns = matrix_to_channels(own[:, k], _order(joint))
+                turns = matrix_to_channels(own[:, k], order_of(joint))
                 frames[:, columns] = np.degrees(turns)
             elif slot != FIXED:
                 value = angles[:, k, slot] + self.join.shifts[k]
@@ -103,7 +107,8 @@ class ClipBody(Body):
         return replace(self.clip, frames=frames)
 
 
-def _order(joint: BvhJoint) -> tuple[int, int, int]:
+def order_of(joint: BvhJoint) -> tuple[int, int, int]:
+    """Return the axes of a joint's three turns, in order."""
     first, second, third = joint.turns
     return first, second, third
 
@@ -116,21 +121,29 @@ def read_body(model: BvhModel, folder: Path) -> ClipBody:
     """
     clip = read_bvh(folder / model.bvh)
     at = _between(clip, model.base, model.end)
-    clip, numbers = _chosen(clip, model)
-    faults = [fault for k, index in enumerate(at[1:], 1) for fault in _slides(clip, index, k)]
-    faults += [fault for index in at[:-1] for fault in _refusals(clip, index)]
+    clip, numbers = chosen(clip, model)
+    faults = [fault for k, index in enumerate(at[1:], 1) for fault in slides(clip, index, k)]
+    faults += [fault for index in at[:-1] for fault in refusals(clip, index)]
     if faults:
         raise InputError(faults)
-    offsets = [_offset(clip, index) * model.scale for index in at]
+    offsets = [lasting_offset(clip, index) * model.scale for index in at]
     offsets[0] = np.zeros(3)
     models = [
-        _model_joint(clip.joints[index], offset) for index, offset in zip(at, offsets, strict=True)
+        model_joint(clip.joints[index], offset) for index, offset in zip(at, offsets, strict=True)
     ]
     join = joined(models)
-    goals = _path(clip, at, model.scale)
-    names = tuple(map(str, numbers))
+    goals, turns = _path(clip, at, model.scale)
     return ClipBody(
-        Chain(join.joints), (), goals, names, clip.frame_time, clip, model.scale, tuple(at), join
+        Chain(join.joints),
+        (),
+        goals,
+        tuple(map(str, numbers)),
+        clip.frame_time,
+        matrix_to_hpb(turns @ join.frames[-1]),
+        clip,
+        model.scale,
+        tuple(at),
+        join,
     )
 
 
@@ -154,7 +167,7 @@ def _between(clip: Clip, base: str, end: str) -> list[int]:
     return way[way.index(names.index(base)) :: -1]
 
 
-def _chosen(clip: Clip, model: BvhModel) -> tuple[Clip, range]:
+def chosen(clip: Clip, model: FramesModel) -> tuple[Clip, range]:
     """Take the frames a scene asks for, with their numbers."""
     count = len(clip.frames)
     first, last = model.frames or (0, count - 1)
@@ -169,7 +182,7 @@ def _chosen(clip: Clip, model: BvhModel) -> tuple[Clip, range]:
     return taken, numbers
 
 
-def _slides(clip: Clip, index: int, place: int) -> list[Fault]:
+def slides(clip: Clip, index: int, place: int) -> list[Fault]:
     """Refuse a joint whose position channels change the bone before it."""
     joint = clip.joints[index]
     if not joint.moves:
@@ -183,7 +196,8 @@ def _slides(clip: Clip, index: int, place: int) -> list[Fault]:
     return [Fault("slides", message, "", clip.file, joint.line, hint="choose a base below it")]
 
 
-def _refusals(clip: Clip, index: int) -> list[Fault]:
+def refusals(clip: Clip, index: int) -> list[Fault]:
+    """Say why a joint cannot be in a chain, if so."""
     joint = clip.joints[index]
     if len(joint.turns) != 2:
         return []
@@ -191,12 +205,13 @@ def _refusals(clip: Clip, index: int) -> list[Fault]:
     return [Fault("channel", message, "", clip.file, joint.line)]
 
 
-def _offset(clip: Clip, index: int) -> Array:
+def lasting_offset(clip: Clip, index: int) -> Array:
     """A joint's lasting offset, in limbik's axes."""
     return Y_UP.points(joint_offsets(clip, clip.joints[index]).mean(axis=0))
 
 
-def _model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
+def model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
+    """Make a joint of a chain, in limbik's axes."""
     still = np.eye(3)
     if len(joint.turns) == 1:
         axis = Y_UP.points(np.eye(3)[joint.turns[0]])
@@ -204,14 +219,16 @@ def _model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
     return ModelJoint(joint.name, offset, still, "free" if joint.turns else "fixed")
 
 
-def _path(clip: Clip, at: list[int], scale: float) -> Array:
-    """Where the end is, seen from what the base hangs from, (m, 3)."""
+def _path(clip: Clip, at: list[int], scale: float) -> tuple[Array, Array]:
+    """Where the end is, seen from what the base hangs from, (m, 3), and its turn, (m, 3, 3)."""
     motion = clip_motion(clip, scale)
     place = np.zeros((len(clip.frames), 3))
+    turn = motion.turns[:, at[-1]]
     for index in reversed(at[1:]):
-        place = motion.offsets[:, index] + place
-        place = (motion.turns[:, clip.joints[index].parent] @ place[..., None])[..., 0]
-    return place
+        parent = motion.turns[:, clip.joints[index].parent]
+        place = (parent @ (motion.offsets[:, index] + place)[..., None])[..., 0]
+        turn = parent @ turn
+    return place, turn
 
 
 def inspect(path: Path) -> Inspection:
@@ -251,10 +268,3 @@ def _candidates(clip: Clip) -> Iterable[tuple[str, str, str]]:
         names = [clip.joints[index].name for index in reversed(way)]
         if len(names) > 2:
             yield names[0], joint.name, f"{len(names)} joints: {', '.join(names)}"
-
-
-@hookimpl
-def limbik_scene_inputs() -> Iterable[SceneInput]:
-    """Offer `bvh`."""
-    sentence = "A chain of a motion clip, with the path of its end."
-    return [SceneInput("bvh", (".bvh",), BvhModel, read_body, inspect, sentence, has_goals=True)]

@@ -9,13 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from limbik.core.formats import Bake, Motion, Output
+from limbik.core.formats import Bake, BodyBake, Motion, Output
 from limbik.core.frames import Y_UP
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.plugins.formats.bvh import BvhJoint, Clip
 from limbik.plugins.formats.bvh_chain import ClipBody
 from limbik.plugins.formats.bvh_motion import mirrored_clip
+from limbik.plugins.formats.bvh_skeleton import ClipSkeleton
 from limbik.plugins.formats.channels import matrix_to_channels
 from limbik.plugins.formats.tables import unmirrored
 
@@ -35,11 +36,22 @@ def write(bake: Bake) -> str:
     return clip_text(mirrored_clip(clip) if bake.mirrored else clip)
 
 
+def write_body(bake: BodyBake) -> str:
+    """Write the whole skeleton of a scene with several chains."""
+    skeleton = bake.scene.skeleton
+    if isinstance(skeleton, ClipSkeleton):
+        clip = skeleton.baked(bake.motion, [part.limb for part in bake.scene.parts])
+    else:
+        clip = clip_of(bake.motion)
+    return clip_text(mirrored_clip(clip) if bake.mirrored else clip)
+
+
 def clip_of(motion: Motion) -> Clip:
     """Make a clip of a motion; zero rotations become the axes of the world, as BVH needs it.
 
     The roots get position channels, the other joints their lasting offsets.
     """
+    motion = _depth_first(motion)
     zero = _world_zero(motion)
     turned = motion.turns @ zero.transpose(0, 2, 1)
     joints: list[BvhJoint] = []
@@ -63,6 +75,27 @@ def clip_of(motion: Motion) -> Clip:
         joints.append(BvhJoint(name, parent, (x, y, z), moves, _ORDER, at, channels, site, 0))
         width += count
     return Clip("", tuple(joints), np.concatenate(columns, axis=1), motion.frame_time)
+
+
+def _depth_first(motion: Motion) -> Motion:
+    """Return a motion with its joints in the order a clip lists them and their channels."""
+    children: dict[int, list[int]] = {}
+    for index, parent in enumerate(motion.parents):
+        children.setdefault(parent, []).append(index)
+    order: list[int] = []
+    waiting = children[-1][::-1]
+    while waiting:
+        order.append(waiting.pop())
+        waiting += children.get(order[-1], [])[::-1]
+    place = {index: k for k, index in enumerate(order)} | {-1: -1}
+    return Motion(
+        tuple(motion.names[index] for index in order),
+        tuple(place[motion.parents[index]] for index in order),
+        motion.offsets[:, order],
+        motion.turns[:, order],
+        motion.zero[order],
+        motion.frame_time,
+    )
 
 
 def _world_zero(motion: Motion) -> Array:
@@ -113,4 +146,5 @@ def _plain(value: float) -> str:
 @hookimpl
 def limbik_outputs() -> Iterable[Output]:
     """Offer `bvh`."""
-    return [Output("bvh", (".bvh",), write, "A motion clip; a scene's own clip is kept whole.")]
+    sentence = "A motion clip; a scene's own clip is kept whole."
+    return [Output("bvh", (".bvh",), write, sentence, write_body)]

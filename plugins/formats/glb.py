@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from limbik import __version__
 from limbik.core.chain import SHORTEST
-from limbik.core.formats import Bake, Motion, Output
+from limbik.core.formats import Bake, BodyBake, Motion, Output
 from limbik.core.frames import Y_UP
 from limbik.core.hooks import hookimpl
 from limbik.core.mirror import side_swapped
@@ -39,10 +39,18 @@ _FACES: Final = [
 
 def write(bake: Bake) -> bytes:
     """Write a baked motion as a GLB file."""
-    motion = bake.body.motion(unmirrored(bake), bake.frame_time)
+    return _content(bake.body.motion(unmirrored(bake), bake.frame_time), bake.mirrored)
+
+
+def write_body(bake: BodyBake) -> bytes:
+    """Write the whole skeleton of a scene with several chains."""
+    return _content(bake.motion, bake.mirrored)
+
+
+def _content(motion: Motion, mirrored: bool) -> bytes:
     offsets, turns = Y_UP.points(motion.offsets), Y_UP.rotations(motion.turns)
     names = list(motion.names)
-    if bake.mirrored:
+    if mirrored:
         # A mirror of X, which here stands for limbik's X too.
         offsets, turns = Y_UP.points(offsets), Y_UP.rotations(turns)
         names = side_swapped(names)
@@ -223,4 +231,5 @@ def _quaternions(turns: Array) -> Array:
 @hookimpl
 def limbik_outputs() -> Iterable[Output]:
     """Offer `glb`."""
-    return [Output("glb", (".glb",), write, "An animated skeleton for viewers (binary glTF).")]
+    sentence = "An animated skeleton for viewers (binary glTF)."
+    return [Output("glb", (".glb",), write, sentence, write_body)]

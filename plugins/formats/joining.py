@@ -57,12 +57,14 @@ class Joined:
         frames: Q, limbik's joint frames in the model's, (n, 3, 3).
         slots: Which angle of each joint is the hinge; FREE or FIXED if none.
         shifts: What the model's hinge values exceed limbik's by, (n,) [rad].
+        shifted: The shifts as rotations in limbik's joint frames, (n, 3, 3).
     """
 
     joints: tuple[Joint, ...]
     frames: Array
     slots: tuple[int, ...]
     shifts: Array
+    shifted: Array
 
     def hinge_values(self, angles: Array) -> tuple[tuple[str, ...], Array]:
         """Return the names of the hinges and the model's values (m, k) [rad] for angles."""
@@ -77,7 +79,7 @@ class Joined:
 
 def joined(models: Sequence[ModelJoint]) -> Joined:
     """Make limbik's joints of a model's, base first."""
-    joints, frames, slots, shifts = [], [], [], []
+    joints, frames, slots, shifts, shifted = [], [], [], [], []
     before = np.eye(3)
     for index, model in enumerate(models):
         frame, slot = _frame(model, _bone(models, index), before)
@@ -85,7 +87,8 @@ def joined(models: Sequence[ModelJoint]) -> Joined:
         turned = np.zeros(3)
         if slot in (HEADING, PITCH, BANK):
             turned[slot] = shift
-        frozen = hpb_of(before.T @ model.turn @ frame @ hpb_to_matrix(turned))
+        shifted.append(hpb_to_matrix(turned))
+        frozen = hpb_of(before.T @ model.turn @ frame @ shifted[-1])
         limits: list[Limit | None] = [None if slot == FREE else (0.0, 0.0)] * 3
         rest = [0.0, 0.0, 0.0]
         if slot in (HEADING, PITCH, BANK):
@@ -106,7 +109,9 @@ def joined(models: Sequence[ModelJoint]) -> Joined:
         slots.append(slot)
         shifts.append(shift)
         before = frame
-    return Joined(tuple(joints), np.array(frames), tuple(slots), np.array(shifts))
+    return Joined(
+        tuple(joints), np.array(frames), tuple(slots), np.array(shifts), np.array(shifted)
+    )
 
 
 def _vector(values: Sequence[float] | Array) -> tuple[float, float, float]:

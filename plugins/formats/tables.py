@@ -15,6 +15,7 @@ from limbik.core.frames import mirror_hpb
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.core.solution import Status
+from limbik.plugins.formats.bodytables import write_body_csv, write_body_json, write_body_npz
 
 
 def unmirrored(bake: Bake) -> Array:
@@ -114,8 +115,11 @@ def write_npz(bake: Bake) -> bytes:
 @hookimpl
 def limbik_outputs() -> Iterable[Output]:
     """Offer `csv`, `json` and `npz`."""
+    line = "One line a frame, angles in degrees."
+    columns = "Columns of the motion, angles in degrees."
+    arrays = "Arrays of the motion, angles in radians."
     return [
-        Output("csv", (".csv",), write_csv, "One line a frame, angles in degrees."),
-        Output("json", (".json",), write_json, "Columns of the motion, angles in degrees."),
-        Output("npz", (".npz",), write_npz, "Arrays of the motion, angles in radians."),
+        Output("csv", (".csv",), write_csv, line, write_body_csv),
+        Output("json", (".json",), write_json, columns, write_body_json),
+        Output("npz", (".npz",), write_npz, arrays, write_body_npz),
     ]

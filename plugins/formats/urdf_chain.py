@@ -10,7 +10,7 @@ their names, angles and limits; fixed joints are merged into the next one. A ran
 the robot's values; one of a whole turn or more does not limit.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import degrees, radians
 from pathlib import Path
@@ -21,9 +21,8 @@ from pydantic import Field
 
 from limbik.core.chain import SHORTEST, Chain
 from limbik.core.errors import Fault, InputError
-from limbik.core.formats import Body, Inspection, SceneInput, Values
+from limbik.core.formats import Body, Inspection, Values
 from limbik.core.frames import Z_UP, rpy_to_matrix
-from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import Angle
 from limbik.core.settings import Model
@@ -76,7 +75,7 @@ def read_body(model: UrdfModel, folder: Path) -> UrdfBody:
     """
     robot = read_urdf(folder / model.urdf)
     joints = _between(robot, model.base, model.end)
-    faults = [fault for joint in joints for fault in _refusals(joint)]
+    faults = [fault for joint in joints for fault in refusals(joint)]
     hinges = [joint.name for joint in joints if joint.is_hinge]
     for name in model.rest:
         if name not in hinges:
@@ -110,7 +109,8 @@ def _between(robot: Robot, base: str, end: str) -> list[UrdfJoint]:
     return [robot.joints[link] for link in links]
 
 
-def _refusals(joint: UrdfJoint) -> list[Fault]:
+def refusals(joint: UrdfJoint) -> list[Fault]:
+    """Say why a joint cannot be in a chain, if so."""
     if joint.kind in _WHY_NOT:
         message = f"joint '{joint.name}' {_WHY_NOT[joint.kind]}"
         return [joint.element.fault(joint.kind, message, "type")]
@@ -129,7 +129,7 @@ def _body(robot: Robot, joints: list[UrdfJoint], model: UrdfModel) -> UrdfBody:
         turn = turn @ Z_UP.rotations(rpy_to_matrix(joint.turn))
         if not joint.is_hinge:
             continue
-        rest, note = _rest(joint, model)
+        rest, note = rest_value(joint, model.rest)
         notes += note
         axis = Z_UP.points(joint.axis)
         models.append(ModelJoint(joint.name, place, turn, "hinge", axis, joint.limit, rest))
@@ -142,9 +142,9 @@ def _body(robot: Robot, joints: list[UrdfJoint], model: UrdfModel) -> UrdfBody:
     return UrdfBody(Chain(join.joints), (*robot.notes, *notes), join=join)
 
 
-def _rest(joint: UrdfJoint, model: UrdfModel) -> tuple[float, list[str]]:
+def rest_value(joint: UrdfJoint, wanted_degrees: Mapping[str, float]) -> tuple[float, list[str]]:
     """Give a hinge's rest value [rad] inside its limits, and what should be known about it."""
-    wanted = radians(model.rest.get(joint.name, 0.0))
+    wanted = radians(wanted_degrees.get(joint.name, 0.0))
     if joint.limit is None:
         return wanted, []
     rest = min(max(wanted, joint.limit[0]), joint.limit[1])
@@ -197,7 +197,7 @@ def _candidates(robot: Robot) -> Iterable[tuple[str, str, str]]:
         joints = []
         for link in way[:-1]:
             joint = robot.joints[link]
-            if _refusals(joint):
+            if refusals(joint):
                 break
             joints.append(joint)
             forks = parents.count(joint.parent) > 1
@@ -213,10 +213,3 @@ def _is_chain(upward: list[UrdfJoint]) -> bool:
     hinges = [place for place, joint in enumerate(upward) if joint.is_hinge]
     moved = upward[: hinges[-1]] if hinges else []
     return len(hinges) > 1 and any(np.linalg.norm(joint.place) > SHORTEST for joint in moved)
-
-
-@hookimpl
-def limbik_scene_inputs() -> Iterable[SceneInput]:
-    """Offer `urdf`."""
-    sentence = "A chain between two links of a robot."
-    return [SceneInput("urdf", (".urdf",), UrdfModel, read_body, inspect, sentence)]

@@ -7,7 +7,7 @@ from math import degrees
 import numpy as np
 
 from limbik.core.rotation import Array
-from limbik.plugins.judging.curve import curl, unevenness
+from limbik.plugins.judging.curve import curl, s_shape, unevenness
 from limbik.plugins.judging.latency import latency
 from limbik.plugins.judging.limits import chatter, limit_excess
 from limbik.plugins.judging.mirror import asymmetry
@@ -16,6 +16,7 @@ from limbik.plugins.judging.motion import accelerations, gains, plane_speeds, po
 from limbik.plugins.judging.optimum import limit_error
 from limbik.plugins.judging.reach import excess_errors, false_statuses, reach_errors
 from limbik.plugins.judging.replay import drift, flips, history
+from limbik.plugins.judging.roundtrip import round_trip
 from limbik.plugins.judging.run import NotJudged, Run
 from limbik.plugins.judging.smoothness import roughness
 from limbik.plugins.judging.soundness import stretch, unsound_poses
@@ -31,6 +32,8 @@ class Metric:
         unit: For people.
         meaning: One line.
         measure: Gives the value, or raises `NotJudged`.
+        on_path: Whether it says something only where the goals are a path.
+        again: Whether it solves more than the path itself, in ways limbik's own solver knows.
     """
 
     name: str
@@ -38,6 +41,8 @@ class Metric:
     unit: str
     meaning: str
     measure: Callable[[Run], float]
+    on_path: bool = False
+    again: bool = False
 
 
 def _at(
@@ -69,20 +74,65 @@ METRICS: tuple[Metric, ...] = (
         "excess_error", "M2", "% L", "miss beyond the unavoidable", _at(100, excess_errors, 100)
     ),
     Metric(
-        "limit_error", "M2", "% L", "miss beyond the best of long solves", _times(100, limit_error)
+        "limit_error",
+        "M2",
+        "% L",
+        "miss beyond the best of long solves",
+        _times(100, limit_error),
+        again=True,
     ),
-    Metric("gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains)),
-    Metric("gain", "M3", "rad/L", "largest of these", _at(100, gains)),
-    Metric("acceleration", "M4", "°/s²", "of a joint, largest", _at(100, accelerations, _DEG)),
-    Metric("acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG)),
-    Metric("pops", "M5", "", "turns that stand out from those around", pops),
-    Metric("flips", "M6", "", "jumps that no finer path removes", flips),
-    Metric("roughness", "M7", "", "log jerk of the middle joint less the goal's", roughness),
-    Metric("chatter", "M8", "1/s", "reversals of a limited axis", chatter),
+    Metric(
+        "gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains), on_path=True
+    ),
+    Metric("gain", "M3", "rad/L", "largest of these", _at(100, gains), on_path=True),
+    Metric(
+        "acceleration",
+        "M4",
+        "°/s²",
+        "of a joint, largest",
+        _at(100, accelerations, _DEG),
+        on_path=True,
+    ),
+    Metric(
+        "acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG), on_path=True
+    ),
+    Metric("pops", "M5", "", "turns that stand out from those around", pops, on_path=True),
+    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True, again=True),
+    Metric(
+        "roughness",
+        "M7",
+        "",
+        "log jerk of the middle joint less the goal's",
+        roughness,
+        on_path=True,
+    ),
+    Metric("chatter", "M8", "1/s", "reversals of a limited axis", chatter, on_path=True),
     Metric("limit_excess", "M9", "°", "beyond a limit", _times(_DEG, limit_excess)),
-    Metric("history", "M10", "°", "pose change by the order of goals", _times(_DEG, history)),
-    Metric("drift", "M11", "°", "first pose after the path, 1000 times", _times(_DEG, drift)),
-    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry),
+    Metric(
+        "history",
+        "M10",
+        "°",
+        "pose change by the order of goals",
+        _times(_DEG, history),
+        again=True,
+    ),
+    Metric(
+        "drift",
+        "M11",
+        "°",
+        "first pose after the path, 1000 times",
+        _times(_DEG, drift),
+        again=True,
+    ),
+    Metric(
+        "round_trip",
+        "M12",
+        "°",
+        "pose change, IK to FK and back",
+        _times(_DEG, round_trip),
+        again=True,
+    ),
+    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry, again=True),
     Metric(
         "swivel_error",
         "M14",
@@ -90,10 +140,20 @@ METRICS: tuple[Metric, ...] = (
         "bend plane against a recorded one",
         _not_yet("a scene holds no recorded limb to compare with"),
     ),
-    Metric("plane_speed_p95", "M15", "°/s", "of the bend plane", _at(95, plane_speeds, _DEG)),
+    Metric(
+        "plane_speed_p95",
+        "M15",
+        "°/s",
+        "of the bend plane",
+        _at(95, plane_speeds, _DEG),
+        on_path=True,
+    ),
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
-    Metric("mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour),
+    Metric("s_shape", "M17", "L", "change of the bend's side from the middle", s_shape),
+    Metric(
+        "mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour, again=True
+    ),
     Metric(
         "rate_dependence",
         "M19",
@@ -104,7 +164,14 @@ METRICS: tuple[Metric, ...] = (
     Metric("false_statuses", "M20", "", "goals whose status is not true", false_statuses),
     Metric("unsound_poses", "M21", "", "not finite or no rotation", unsound_poses),
     Metric("stretch", "M22", "L", "change of a bone's length", stretch),
-    Metric("latency", "M23", "ms", "95 % of single solves are faster", _times(1000.0, latency)),
+    Metric(
+        "latency",
+        "M23",
+        "ms",
+        "95 % of single solves are faster",
+        _times(1000.0, latency),
+        again=True,
+    ),
 )
 
 BY_NAME = {metric.name: metric for metric in METRICS}

@@ -2,13 +2,11 @@
 
 import numpy as np
 
+from limbik.core.motion import joint_steps, popping
 from limbik.core.rotation import Array
-from limbik.plugins.judging.run import NotJudged, Run, turn_between
+from limbik.plugins.judging.run import NotJudged, Run
 
 SLOWEST = 0.2  # goals that move slower are not asked for a gain [lengths/s]
-POP = np.radians(3.0)  # a turn between goals that can pop [rad]
-TIMES = 4.0  # a pop turns so many times more than the goals around it
-AROUND = 4  # goals looked at on either side
 BENT = 0.05  # a limb is bent where its middle is this far off the line [lengths]
 
 
@@ -16,7 +14,7 @@ def joint_turns(run: Run) -> Array:
     """Turn of every joint before the end from goal to goal [rad], (m-1, n-1)."""
     if len(run.goals) < 3:
         raise NotJudged("a path of at least three goals is needed")
-    return turn_between(run.local[:-1, :-1], run.local[1:, :-1])
+    return joint_steps(run.solution.angles)
 
 
 def gains(run: Run) -> Array:
@@ -34,13 +32,8 @@ def accelerations(run: Run) -> Array:
 
 
 def pops(run: Run) -> float:
-    """Turns above 3° that are four times the median of the nine around them."""
-    found = 0
-    for turns in joint_turns(run).T:
-        for at in np.flatnonzero(turns > POP):
-            around = turns[max(at - AROUND, 0) : at + AROUND + 1]
-            found += bool(turns[at] > TIMES * np.median(around))
-    return float(found)
+    """Steps that stand out from those around them."""
+    return float(popping(joint_turns(run)).sum())
 
 
 def plane_speeds(run: Run) -> Array:

@@ -1,5 +1,6 @@
 """Judge a scene: measure its path, compare with the scene's own thresholds, tell the result."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import Fault, SceneError
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
@@ -103,9 +105,22 @@ def judge_record(scene: Scene, verdicts: list[Verdict]) -> dict[str, Any]:
     }
 
 
-def print_verdicts(verdicts: list[Verdict]) -> None:
-    """Print one line a metric and how many thresholds hold."""
+def body_record(scene: BodyScene, verdicts: Mapping[str, list[Verdict]]) -> dict[str, Any]:
+    """Describe the verdicts on each chain for machines."""
+    chains = []
+    for part in scene.parts:
+        record = judge_record(part.scene, verdicts[part.name])
+        chains.append({"name": part.name, "metrics": record["metrics"]})
+    passed = all(map(are_passed, verdicts.values()))
+    status = "ok" if passed else "failed"
+    return {"status": status, "scene": scene.document.name, "chains": chains}
+
+
+def print_verdicts(verdicts: list[Verdict], chain: str = "") -> None:
+    """Print one line a metric and how many thresholds hold; under the chain's name if any."""
     console = new_console()
+    if chain:
+        console.print(Text(chain, "bold"))
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for title in ("metric", "", "value", "max", "unit", "verdict", "meaning"):
         table.add_column(title, justify="right" if title in ("value", "max") else "left")

@@ -6,9 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from limbik.core.chain import Chain
+from limbik.core.motion import turn_between
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scene import Scene, require_own_solver
+from limbik.core.scene import Scene, require_goals, require_own_solver
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
@@ -33,6 +34,7 @@ class Run:
         follow: Whether each goal was solved from the pose before it.
         rate: Goals a second [1/s].
         solution: With a leading goal axis.
+        turned: Whether the goals turn a pole rotor.
     """
 
     solver: Solver
@@ -41,6 +43,7 @@ class Run:
     follow: bool
     rate: float
     solution: Solution
+    turned: bool = False
 
     @property
     def chain(self) -> Chain:
@@ -51,11 +54,6 @@ class Run:
     def settings(self) -> Settings:
         """The options."""
         return self.solver.settings
-
-    @cached_property
-    def local(self) -> Array:
-        """Rotations of the joints relative to their frozen frames, (m, n, 3, 3)."""
-        return hpb_to_matrix(self.solution.angles)
 
     @cached_property
     def from_root(self) -> Array:
@@ -82,7 +80,13 @@ class Run:
         return bool(np.isfinite(self.chain.high[:-1]).any())
 
     def solve(self, goals: Array, solver: Solver | None = None) -> Solution:
-        """Solve other goals the way the scene does."""
+        """Solve other goals the way the scene does.
+
+        Raises:
+            NotJudged: The goals turn a rotor, and other goals have no turns.
+        """
+        if self.turned:
+            raise NotJudged("goals that turn a pole rotor are not solved in another order")
         chosen = self.solver if solver is None else solver
         many = chosen.follow if self.follow else chosen.solve_many
         return many(goals, fk_offsets=self.fk_offsets)
@@ -97,21 +101,11 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     """
     rate = RATE if scene.judge is None else scene.judge.rate
     require_own_solver(scene, "limbik judge")
+    require_goals(scene)
     solver = scene_solver(scene, registry)
     solution = solve_part(solver, scene, slice(None))
-    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution)
-
-
-def turn_between(first: Array, second: Array) -> Array:
-    """Return the angles between rotations [rad].
-
-    Args:
-        first: (..., 3, 3).
-        second: (..., 3, 3).
-    """
-    # |A - B|² = 8 sin²(angle / 2): exact for small angles, where the trace is not.
-    apart = np.linalg.norm(first - second, axis=(-2, -1)) / np.sqrt(8.0)
-    return np.asarray(2.0 * np.arcsin(np.clip(apart, 0.0, 1.0)))
+    turned = scene.goal_turns is not None
+    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution, turned)
 
 
 def pose_difference(run: Run, first: Array, second: Array) -> float:

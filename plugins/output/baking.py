@@ -4,10 +4,11 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from time import monotonic
 from typing import Final, TypeVar
 
 from limbik.core.errors import Fault, InputError
-from limbik.core.formats import Inspection, Output, SceneInput
+from limbik.core.formats import BodyBake, Inspection, Output, SceneInput
 from limbik.core.registry import Registry
 
 LONG: Final = 2000  # frames from which progress is shown
@@ -21,6 +22,18 @@ def output_for(path: Path, registry: Registry) -> Output:
         InputError: No output writes such files.
     """
     return _by_ending(path, list(registry.outputs().values()), "written")
+
+
+def body_writer(found: Output, path: Path) -> Callable[[BodyBake], str | bytes]:
+    """Return what writes scenes of several chains.
+
+    Raises:
+        InputError: The output writes single chains only.
+    """
+    if found.write_body is None:
+        message = f"files ending in '{path.suffix}' hold one chain, this scene has several"
+        raise InputError(Fault("ending", message, file=str(path)))
+    return found.write_body
 
 
 def inspect_file(path: Path, registry: Registry) -> Inspection:
@@ -66,10 +79,17 @@ class _Lines:
 
     def __init__(self, total: int) -> None:
         self._total, self._tenth = total, 0
+        self._first: tuple[int, float] | None = None
 
     def show(self, done: int) -> None:
-        """Write a line if another tenth is done."""
+        """Write a line if another tenth is done, with the time left from the second on."""
+        now = monotonic()
+        self._first = self._first or (done, now)
+        before, then = self._first
+        left = ""
+        if before < done < self._total:
+            left = f", {(now - then) * (self._total - done) / (done - before):.0f} s left"
         tenth = 10 * done // self._total
         if tenth > self._tenth:
             self._tenth = tenth
-            print(f"{10 * tenth} % {done}/{self._total}", file=sys.stderr)
+            print(f"{10 * tenth} % {done}/{self._total}{left}", file=sys.stderr)

@@ -88,7 +88,7 @@ def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> byte
     with rc_context(LOOK):
         figure = _figure(scene, solutions)
         content = BytesIO()
-        figure.savefig(content, format=form, dpi=130, metadata=_undated(form))
+        figure.savefig(content, format=form, dpi=130, metadata=undated(form))
     return content.getvalue()
 
 
@@ -116,7 +116,7 @@ def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
     return figure
 
 
-def _undated(form: str) -> dict[str, None]:
+def undated(form: str) -> dict[str, None]:
     """Leave the date out, so that the same scene gives the same file."""
     return {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[form]
 
@@ -133,7 +133,11 @@ def _bounds(solutions: Sequence[Solution]) -> Bounds:
     poses = [places for solution in solutions for _, places in _poses(solution)]
     points = np.concatenate([*poses, *([solution.goal] for solution in solutions)])
     poles = [plane_points(s) for s in solutions if isinstance(s, PlanarSolution)]
-    points = np.concatenate([points, *poles])
+    return box_around(np.concatenate([points, *poles]))
+
+
+def box_around(points: Array) -> Bounds:
+    """Return a box around points, (k, 3), that is flat in no direction."""
     low, high = points.min(axis=0), points.max(axis=0)
     extent = float((high - low).max()) or 1.0
     spare = np.maximum(0.55 * extent - (high - low), 0.0) / 2.0 + 0.05 * extent  # no flat boxes
@@ -169,9 +173,7 @@ def _draw_limb(axes: Any, scene: Scene, solution: Solution, order: tuple[int, ..
 
 def _draw_space(axes: Any, scene: Scene, solution: Solution, bounds: Bounds) -> None:
     """Draw one solution in three dimensions, with shadows that give depth."""
-    from matplotlib.ticker import MaxNLocator
-
-    low, high = bounds
+    low, _ = bounds
     floor, wall = solution.positions.copy(), solution.positions.copy()
     floor[:, 1], wall[:, 2] = low[1], low[2]
     for shadow in (floor, wall):
@@ -180,6 +182,14 @@ def _draw_space(axes: Any, scene: Scene, solution: Solution, bounds: Bounds) -> 
     foot[1, 1] = low[1]
     axes.plot(*foot[:, SPACE].T, color=GOAL, lw=0.9, ls=":", zorder=1)
     _draw_limb(axes, scene, solution, SPACE)
+    set_space(axes, bounds)
+
+
+def set_space(axes: Any, bounds: Bounds) -> None:
+    """Set limits, equal axes and the view of a picture in space."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = bounds
     axes.set(xlim=(low[0], high[0]), ylim=(low[2], high[2]), zlim=(low[1], high[1]))
     axes.set_box_aspect((high - low)[list(SPACE)], zoom=1.15)  # equal axes
     axes.view_init(elev=16, azim=40)

@@ -12,8 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from limbik.core.body import BodySolution, bodies_met, chain_solutions
+from limbik.core.bodyscene import BodyScene
 from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
+from limbik.core.posegoals import PoseSolution
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
@@ -56,6 +59,32 @@ def solve_record(
     }
 
 
+def body_record(
+    scene: BodyScene, found: Sequence[BodySolution], stages: bool = False
+) -> dict[str, Any]:
+    """Describe what became of every frame of a scene with several chains.
+
+    Args:
+        scene: The scene.
+        found: One solution a frame.
+        stages: As in `solve_record`.
+    """
+    chains = []
+    for part, solutions in zip(scene.parts, chain_solutions(found).values(), strict=True):
+        record = solve_record(part.scene, solutions, stages)
+        chains.append({"name": part.name, "joints": record["joints"], "goals": record["goals"]})
+    return {
+        "status": "ok" if bodies_met(scene, found) else "unreached",
+        "scene": scene.document.name,
+        "skeleton": {"joints": list(scene.skeleton.names), "parents": list(scene.skeleton.parents)},
+        "chains": chains,
+        "frames": [
+            {"name": name, "positions": body.positions.tolist()}
+            for name, body in zip(scene.frame_names, found, strict=True)
+        ],
+    }
+
+
 def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
     record: dict[str, Any] = {
         "name": name,
@@ -64,12 +93,17 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
         "reached": bool(solution.reached),
         "remark": solution.remark,
         "distance": float(solution.distance),
+        "nearest": None if solution.nearest is None else float(solution.nearest),
         "iterations": int(solution.iterations),
         "angles": np.degrees(solution.angles).tolist(),
         "positions": solution.positions.tolist(),
         "bend_vector": solution.bend_vector.tolist(),
         "at_limits": list(solution.limits_touched()),
     }
+    if isinstance(solution, PoseSolution):
+        record["goal_rotation"] = solution.goal_rotation.tolist()
+        record["rotation_error"] = float(np.degrees(solution.rotation_error))
+        record["jumped"] = bool(solution.jumped)
     if isinstance(solution, PlanarSolution):
         record["planar"] = {
             "angles": np.degrees(solution.planar_angles).tolist(),
@@ -93,15 +127,29 @@ def _goal_record(name: str, solution: Solution, stages: bool) -> dict[str, Any]:
     return record
 
 
-def check_record(scenes: Sequence[Scene]) -> dict[str, Any]:
+def check_record(scenes: Sequence[Scene | BodyScene]) -> dict[str, Any]:
     """Describe scenes that were found good."""
     return {
         "status": "ok",
         "scenes": [
-            {"file": s.document.name, "joints": list(s.chain.names), "goals": len(s.goals)}
+            _counts(s) if isinstance(s, Scene) else {**_body_counts(s), "chains": _parts(s)}
             for s in scenes
         ],
     }
+
+
+def _counts(scene: Scene) -> dict[str, Any]:
+    joints = list(scene.chain.names)
+    return {"file": scene.document.name, "joints": joints, "goals": len(scene.goals)}
+
+
+def _body_counts(scene: BodyScene) -> dict[str, Any]:
+    joints = list(scene.skeleton.names)
+    return {"file": scene.document.name, "joints": joints, "frames": len(scene.frame_names)}
+
+
+def _parts(scene: BodyScene) -> list[dict[str, Any]]:
+    return [{"name": p.name, "joints": list(p.scene.chain.names)} for p in scene.parts]
 
 
 def failure_record(error: BaseException, status: str) -> dict[str, Any]:

@@ -147,7 +147,9 @@ class Profile:
             angle = float(solution.angles[joint, axis])
             tick = servo.tick(angle)
             if not servo.accepts(tick):
-                faults.append(_out_of_range(f"{names[joint]} {AXES[axis]}", angle, servo, goal))
+                where = f"goal '{goal}': " if goal else ""
+                name = f"{names[joint]} {AXES[axis]}"
+                faults.append(out_of_range(name, angle, servo, where))
             reached = achieved[joint, axis] = servo.angle(tick)
             commands.append(Command(names[joint], AXES[axis], servo.id, angle, tick, reached))
         if faults:
@@ -190,9 +192,9 @@ class Profile:
         return pose
 
 
-def _out_of_range(name: str, angle: float, servo: Servo, goal: str) -> Fault:
+def out_of_range(name: str, angle: float, servo: Servo, where: str) -> Fault:
+    """Return the fault of a joint's axis whose angle [rad] its servo does not have."""
     low, high = (floor(end * 100.0 + 0.5) / 100.0 for end in servo.span)
-    where = f"goal '{goal}': " if goal else ""
     message = (
         f"{where}{name} is at {degrees(angle):.2f}°, servo {servo.id} turns {low:g}° to {high:g}°"
     )

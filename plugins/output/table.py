@@ -9,7 +9,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from limbik.core.body import BodySolution, chain_solutions
+from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Inspection
+from limbik.core.posegoals import PoseSolution
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
@@ -17,7 +20,7 @@ from limbik.plugins.output.listing import range_text
 from limbik.plugins.output.records import outcome
 from limbik.plugins.output.servo import ServoPose
 
-_FIXED_WIDTH = 30  # status, distance, rounds and the gaps between them
+_FIXED_WIDTH = 38  # status, distance, angle, rounds and the gaps between them
 _WIDE = 10_000  # columns off a terminal: a table in a file is never folded
 
 
@@ -37,6 +40,9 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     table.add_column("goal")
     table.add_column("status")
     table.add_column("distance", justify="right")
+    posed = any(isinstance(solution, PoseSolution) for solution in solutions)
+    if posed:
+        table.add_column("off", justify="right")
     table.add_column("rounds", justify="right")
     for title in shown:
         table.add_column(title, justify="right", no_wrap=True)
@@ -45,6 +51,7 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
             Text(name),
             Text(outcome(solution), style="green" if solution.reached else "red"),
             f"{float(solution.distance):.2g}",
+            *([_turned_off(solution)] if posed else []),
             str(solution.iterations),
             *(joints[title][row] for title in shown),
         )
@@ -53,6 +60,20 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
         console.print(Text(f"{left_out} more joints: see --json or --csv", "dim"))
     reached = sum(bool(solution.reached) for solution in solutions)
     console.print(f"{reached} of {len(solutions)} goals reached")
+
+
+def _turned_off(solution: Solution) -> str:
+    """Return the angle left to a goal's orientation, empty where it has none."""
+    if not isinstance(solution, PoseSolution) or np.isnan(solution.goal_rotation).any():
+        return ""
+    return f"{np.degrees(float(solution.rotation_error)):.2g}°"
+
+
+def print_body(scene: BodyScene, found: Sequence[BodySolution]) -> None:
+    """Print one table a chain, in the order they were solved."""
+    for part, solutions in zip(scene.parts, chain_solutions(found).values(), strict=True):
+        new_console().print(Text(f"\n{part.name}", "bold"))
+        print_solutions(part.scene, solutions)
 
 
 def _fitting(columns: dict[str, list[str]], room: int) -> tuple[list[str], int]:
@@ -134,9 +155,11 @@ def print_inspection(inspection: Inspection) -> None:
         console.print(Text(f"note: {note}", "yellow"))
 
 
-def print_metrics(metrics: dict[str, Any]) -> None:
-    """Print what a baked motion is like, in a few lines."""
+def print_metrics(metrics: dict[str, Any], chain: str = "") -> None:
+    """Print what a baked motion is like, in a few lines; under the chain's name if it has one."""
     console = new_console()
+    if chain:
+        console.print(Text(chain, "bold"))
     frames, reached = metrics["frames"], metrics["reached"]
     style = "green" if reached == frames else "red"
     worst = f"largest distance {metrics['worst_distance']:.2g}"

@@ -7,6 +7,8 @@ from limbik.core.errors import Fault, InputError
 TEMPLATES = (
     "arm",
     "arm7",
+    "arm7-pose",
+    "body",
     "cosine-arm",
     "finger",
     "humanoid",
@@ -15,9 +17,16 @@ TEMPLATES = (
     "leg-pole",
     "planar",
     "spine",
+    "walk",
     "weld",
 )
-_WITH_FILES = {"arm7": "arm7.urdf", "humanoid": "humanoid.urdf"}  # what a scene is read with
+_WITH_FILES = {  # what a scene is read with
+    "arm7": "arm7.urdf",
+    "arm7-pose": "arm7.urdf",
+    "body": "humanoid.urdf",
+    "humanoid": "humanoid.urdf",
+    "walk": "walk.bvh",
+}
 SCHEMA_FILE = "limbik.schema.json"
 
 

@@ -10,6 +10,7 @@ from limbik.core.chain import AXES, Chain
 from limbik.core.frames import Z_UP
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
+from limbik.plugins.output.servo_motion import ServoMotion
 from limbik.plugins.paths.joints import JointMotion
 from limbik.plugins.paths.program import Trajectory
 from limbik.plugins.paths.quaternions import continuous, from_matrix
@@ -37,15 +38,20 @@ def axis_angles(motion: JointMotion) -> Array:
     return np.degrees(motion.angles[:, joints, which])
 
 
-def motion_rows(motion: JointMotion) -> str:
-    """Write a CSV table, one line a sample: time, pose, speed, distance left, angles [deg]."""
+def motion_rows(motion: JointMotion, servos: ServoMotion | None = None) -> str:
+    """Write a CSV table, one line a sample: time, pose, speed, distance left, angles [deg].
+
+    With servos their ticks follow.
+    """
     samples, chain = motion.samples, motion.solution.chain
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *POSE, *MOTION, *axis_names(chain)])
-    reached = np.asarray(motion.solution.reached, int)
-    for row, done in zip(_table(motion, samples).tolist(), reached.tolist(), strict=True):
-        writer.writerow([*row[:10], done, *row[10:]])
+    titles = [] if servos is None else servos.titles
+    writer.writerow(["time", *POSE, *MOTION, *axis_names(chain), *titles])
+    reached = np.asarray(motion.solution.reached, int).tolist()
+    ticks = [[]] * len(samples) if servos is None else servos.ticks.tolist()
+    for row, done, told in zip(_table(motion, samples).tolist(), reached, ticks, strict=True):
+        writer.writerow([*row[:10], done, *row[10:], *told])
     return text.getvalue()
 
 
@@ -62,9 +68,12 @@ def _table(motion: JointMotion, samples: Samples) -> Array:
     )
 
 
-def motion_arrays(motion: JointMotion) -> bytes:
+def motion_arrays(motion: JointMotion, servos: ServoMotion | None = None) -> bytes:
     """Write a compressed NPZ file; angles in radians like all arrays of limbik."""
     samples, solution = motion.samples, motion.solution
+    told: dict[str, Any] = (
+        {} if servos is None else {"servo_ids": servos.ids, "servo_ticks": servos.ticks}
+    )
     content = io.BytesIO()
     np.savez_compressed(
         content,
@@ -77,7 +86,9 @@ def motion_arrays(motion: JointMotion) -> bytes:
         joint_speeds=motion.speeds,
         distance=np.asarray(solution.distance),
         reached=np.asarray(solution.reached),
+        orientation_error=motion.orientation_error,
         joints=np.array(solution.chain.names),
+        **told,
     )
     return content.getvalue()
 
@@ -99,9 +110,9 @@ def tum_rows(samples: Samples, right_handed: bool = False) -> str:
 
 
 def motion_record(
-    scene: Scene, trajectory: Trajectory, motion: JointMotion, with_samples: bool
+    scene: Scene, trajectory: Trajectory, motion: JointMotion, servos: ServoMotion | None = None
 ) -> dict[str, Any]:
-    """Describe a motion: duration, what limits it, overlaps, failures, and the samples if asked."""
+    """Describe a motion: duration, what limits it, overlaps, failures, and the samples."""
     record: dict[str, Any] = {
         "status": "failures" if motion.failures else "ok",
         "scene": scene.document.name,
@@ -121,13 +132,16 @@ def motion_record(
             for done in trajectory.overlaps
         ],
         "failures": [failure_record(failure) for failure in motion.failures],
+        "orientation_solved": motion.is_posed,
         "largest_orientation_error": float(np.degrees(motion.orientation_error.max())),
     }
-    if with_samples:
-        names = ["time", *POSE, "speed", "distance", *axis_names(scene.chain)]
-        columns = _table(motion, motion.samples).T.tolist()
-        record["columns"] = dict(zip(names, columns, strict=True))
-        record["columns"]["reached"] = np.asarray(motion.solution.reached, bool).tolist()
+    names = ["time", *POSE, "speed", "distance", *axis_names(scene.chain)]
+    columns = _table(motion, motion.samples).T.tolist()
+    record["columns"] = dict(zip(names, columns, strict=True))
+    record["columns"]["reached"] = np.asarray(motion.solution.reached, bool).tolist()
+    if servos is not None:
+        record["columns"] |= dict(zip(servos.titles, servos.ticks.T.tolist(), strict=True))
+        record["largest_servo_distance"] = float(servos.distance.max())
     return record
 
 

@@ -6,10 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
+from limbik.core.errors import SceneError
+from limbik.core.posegoals import PoseBatch
 from limbik.core.registry import Registry
-from limbik.core.scene import Scene, require_own_solver
+from limbik.core.scene import Scene
+from limbik.core.slots import SOLVER
+from limbik.core.solution import Continuity
 from limbik.core.solving import scene_solver
+from limbik.core.whole import prepare
 from limbik.plugins.output.files import write_whole
+from limbik.plugins.output.servo import read_profile
+from limbik.plugins.output.servo_motion import ServoMotion, servo_motion
 from limbik.plugins.paths.joints import JointMotion, degrees_to_limits, joint_motion
 from limbik.plugins.paths.program import Trajectory
 from limbik.plugins.paths.scene_program import scene_trajectory
@@ -24,6 +31,7 @@ class Files:
     Attributes:
         csv, npz, tum, plot: Paths, or None.
         right_handed: TUM poses in the right-handed world with Z up.
+        servo: Profile of the servos whose ticks the files get, or None.
     """
 
     csv: Path | None = None
@@ -31,6 +39,7 @@ class Files:
     tum: Path | None = None
     plot: Path | None = None
     right_handed: bool = False
+    servo: str | None = None
 
 
 def run_trajectory(
@@ -55,32 +64,57 @@ def run_trajectory(
         from limbik.plugins.output.plot import check_plot
 
         check_plot(files.plot)
-    require_own_solver(scene, "limbik trajectory")
-    planned = scene_trajectory(scene)
+    profile = None if files.servo is None else read_profile(files.servo, scene.chain)
+    posed = _pose_solver(scene)
+    planned = scene_trajectory(scene, turning=posed is not None)
     section = scene.trajectory
     assert section is not None  # scene_trajectory has refused a scene without
     samples = planned.sample(section.dt if dt is None else dt)
     before_solving()
-    solver = scene_solver(scene, registry)
-    motion = joint_motion(samples, solver, degrees_to_limits(section.joint_speeds))
-    _write(scene, planned, motion, files)
+    solver = posed or scene_solver(scene, registry)
+    pose = planned.key_points[0].angles
+    before = Continuity.from_pose(pose) if posed is not None and pose is not None else None
+    motion = joint_motion(samples, solver, degrees_to_limits(section.joint_speeds), before)
+    servos = None if profile is None else servo_motion(profile, motion)
+    _write(scene, planned, motion, servos, files)
     if as_json:
         from limbik.plugins.output.records import to_json
         from limbik.plugins.output.trajectory_files import motion_record
 
-        print(to_json(motion_record(scene, planned, motion, with_samples=True)))
+        print(to_json(motion_record(scene, planned, motion, servos)))
     else:
-        print("\n".join(_lines(planned, motion)))
+        print("\n".join(_lines(planned, motion, servos)))
     return not motion.failures
 
 
-def _write(scene: Scene, planned: Trajectory, motion: JointMotion, files: Files) -> None:
+def _pose_solver(scene: Scene) -> PoseBatch | None:
+    """Return the scene's solver if it solves pose goals, None for limbik's own.
+
+    Raises:
+        SceneError: The scene chooses another one.
+    """
+    if scene.solver is None:
+        return None
+    batch = prepare(scene.solver, scene.chain, scene.settings)
+    if isinstance(batch, PoseBatch):
+        return batch
+    message = f"a trajectory needs 3d or a solver of pose goals, not '{scene.solver.name}'"
+    raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
+
+
+def _write(
+    scene: Scene,
+    planned: Trajectory,
+    motion: JointMotion,
+    servos: ServoMotion | None,
+    files: Files,
+) -> None:
     from limbik.plugins.output import trajectory_files
 
     if files.csv is not None:
-        write_whole(files.csv, trajectory_files.motion_rows(motion))
+        write_whole(files.csv, trajectory_files.motion_rows(motion, servos))
     if files.npz is not None:
-        write_whole(files.npz, trajectory_files.motion_arrays(motion))
+        write_whole(files.npz, trajectory_files.motion_arrays(motion, servos))
     if files.tum is not None:
         write_whole(files.tum, trajectory_files.tum_rows(motion.samples, files.right_handed))
     if files.plot is not None:
@@ -90,7 +124,7 @@ def _write(scene: Scene, planned: Trajectory, motion: JointMotion, files: Files)
         write_whole(files.plot, draw_motion(scene, planned, motion, form))
 
 
-def _lines(planned: Trajectory, motion: JointMotion) -> list[str]:
+def _lines(planned: Trajectory, motion: JointMotion, servos: ServoMotion | None) -> list[str]:
     """The report for people."""
     heads = f"{'start [s]':>9}  {'end [s]':>8}  {'move':>4}  {'shape':7} {'speed':>15}"
     lines = [f"{heads}  limited by"]
@@ -106,9 +140,13 @@ def _lines(planned: Trajectory, motion: JointMotion) -> list[str]:
     lines += [f"failed: {failure}" for failure in shown]
     if len(motion.failures) > len(shown):
         lines.append(f"failed: {len(motion.failures) - len(shown)} more, all with --json")
+    if servos is not None:
+        off = f"off the path by up to {servos.distance.max():.3g} as their ticks are whole"
+        lines.append(f"{len(servos.ids)} servos, {off}")
     turned = float(np.degrees(motion.orientation_error.max()))
+    aside = "" if motion.is_posed else " (not solved for)"
     lines.append(
         f"{planned.duration:.3f} s, {len(motion.samples)} samples, "
-        f"{len(motion.failures)} failures; orientation off by up to {turned:.1f}° (not solved for)"
+        f"{len(motion.failures)} failures; orientation off by up to {turned:.2g}°{aside}"
     )
     return lines

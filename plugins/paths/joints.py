@@ -1,19 +1,21 @@
 """Joint motion: every sample solved in order, and what is wrong with it, by time and place (J-07).
 
-Goals are the positions of the samples. Their orientations are taken over by the end joint as far
-as `end_orientation` and its limits let it; `orientation_error` tells what is left.
+A solver of pose goals, such as `refine`, is given position and orientation; any other one the
+positions, and its end joint takes the orientations over as far as `end_orientation` and its limits
+let it. How far the end's orientation differs is told by `orientation_error`.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from limbik.core.chain import AXES
+from limbik.core.chain import AXES, Chain
 from limbik.core.errors import Fault, InputError
+from limbik.core.posegoals import PoseBatch, PoseSolution
 from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
@@ -21,7 +23,7 @@ from limbik.core.solver2d import Solver2D
 from limbik.plugins.paths.quaternions import from_matrix, half_angle, short_way
 from limbik.plugins.paths.samples import Samples
 
-Kind = Literal["out-of-reach", "blocked", "stopped", "limit", "speed"]
+Kind = Literal["out-of-reach", "blocked", "stopped", "jump", "limit", "speed"]
 ROUNDING = 1e-9  # [rad]
 TURN = 2.0 * np.pi
 _KINDS: dict[Status, Kind] = {
@@ -41,13 +43,16 @@ class Failure:
     """Neighbouring samples with one thing wrong.
 
     Attributes:
-        kind: `out-of-reach`, `blocked`, `stopped` (all three not reached), `limit` or `speed`.
+        kind: `out-of-reach`, `blocked`, `stopped` (all three not reached), `jump` (no way leads on
+            from the pose before), `limit` or `speed`.
         first, last: Indices of the samples.
         start, end: Their times [s].
         position: The goal where it is worst, (x, y, z) [length].
-        worst: There: distance left [length], angle past the limit [rad], or speed [rad/s].
+        worst: There: distance left [length], angle jumped or past the limit [rad], or speed
+            [rad/s].
         allowed: What would be right: tolerance, 0, or the speed limit.
         joint: Joint and axis, such as `elbow pitch`; empty if it is the end.
+        turned: Largest angle left to the orientation [rad], where the end is not on a pose goal.
     """
 
     kind: Kind
@@ -59,6 +64,7 @@ class Failure:
     worst: float
     allowed: float
     joint: str = ""
+    turned: float = 0.0
 
     def __str__(self) -> str:
         where = "({:.4g}, {:.4g}, {:.4g})".format(*self.position)
@@ -76,7 +82,10 @@ class Failure:
             return f"{self.joint} turns at {worst:.4g}°/s, at most {allowed:.4g}°/s"
         if self.kind == "limit":
             return f"{self.joint} is {worst:.3g}° past its limit"
-        return f"{_WORDS[self.kind]}, {self.worst:.3g} away, at most {self.allowed:.3g}"
+        if self.kind == "jump":
+            return f"the arm has to change its fold: {self.joint} jumps by {worst:.3g}°"
+        aside = f", turned off by {np.degrees(self.turned):.3g}°" if self.turned else ""
+        return f"{_WORDS[self.kind]}, {self.worst:.3g} away, at most {self.allowed:.3g}{aside}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +110,11 @@ class JointMotion:
         return _rates(self.samples.times, self.angles)
 
     @property
+    def is_posed(self) -> bool:
+        """Whether the orientation was solved for."""
+        return isinstance(self.solution, PoseSolution)
+
+    @property
     def orientation_error(self) -> Array:
         """Angle between the end's orientation and the one asked for, (m,) [rad]."""
         found = from_matrix(self.solution.rotations[:, -1])
@@ -109,7 +123,7 @@ class JointMotion:
 
 def joint_motion(
     samples: Samples,
-    solver: Solver,
+    solver: Solver | PoseBatch,
     speed_limits: Mapping[str, float] | None = None,
     continuity: Continuity | None = None,
 ) -> JointMotion:
@@ -117,7 +131,7 @@ def joint_motion(
 
     Args:
         samples: The trajectory.
-        solver: Chain and options.
+        solver: Chain and options; a solver of pose goals solves the orientation too.
         speed_limits: Largest speed of a joint's axes by the joint's name [rad/s].
         continuity: State before the first sample.
 
@@ -125,57 +139,90 @@ def joint_motion(
         InputError: A speed limit names no joint or is not above 0.
         PluginError: A strategy failed.
     """
-    allowed = _allowed(solver, speed_limits or {})
-    turns = matrix_to_hpb(samples.rotations) if solver.settings.end_orientation else None
-    solution = solver.follow(samples.positions, continuity=continuity, goal_turns=turns)
-    angles = _unwound(solver, solution.angles)
+    chain = solver.chain
+    allowed = _allowed(chain, speed_limits or {})
+    solution, tolerance = _solved(samples, solver, continuity)
+    angles = _unwound(chain, solution.angles)
+    in_plane = isinstance(solver, Solver2D)
     found = [
-        *_unreached(samples, solver, solution),
-        *(() if isinstance(solver, Solver2D) else _past_limits(samples, solver, solution.angles)),
-        *_too_fast(samples, solver, angles, allowed),
+        *_unreached(samples, solution, tolerance),
+        *_jumps(samples, solution, angles),
+        *(() if in_plane else _past_limits(samples, chain, solution.angles)),
+        *_too_fast(samples, chain, angles, allowed),
     ]
     ordered = tuple(sorted(found, key=lambda failure: (failure.first, failure.joint)))
     return JointMotion(samples, angles, solution, ordered)
 
 
-def _allowed(solver: Solver, limits: Mapping[str, float]) -> Array:
-    allowed: Array = np.full(len(solver.chain), np.inf)
+def _solved(
+    samples: Samples, solver: Solver | PoseBatch, continuity: Continuity | None
+) -> tuple[Solution, float]:
+    """Return the solution of all samples and the distance that counts as reached [length]."""
+    if isinstance(solver, Solver):
+        turns = matrix_to_hpb(samples.rotations) if solver.settings.end_orientation else None
+        found = solver.follow(samples.positions, continuity=continuity, goal_turns=turns)
+        return found, solver.settings.tolerance
+    near = None if continuity is None else continuity.angles
+    posed = solver.solve_poses(samples.positions, samples.rotations, True, near)
+    return posed, solver.tolerance
+
+
+def _allowed(chain: Chain, limits: Mapping[str, float]) -> Array:
+    allowed: Array = np.full(len(chain), np.inf)
     for name, limit in limits.items():
-        if name not in solver.chain.names:
-            message = f"no joint is called '{name}'; known: {', '.join(solver.chain.names)}"
+        if name not in chain.names:
+            message = f"no joint is called '{name}'; known: {', '.join(chain.names)}"
             raise InputError(Fault("unknown-joint", message, key="joint_speeds"))
         if not limit > 0.0:
             message = f"the speed limit of '{name}' must be above 0, not {limit:g}"
             raise InputError(Fault("range", message, key="joint_speeds"))
-        allowed[solver.chain.names.index(name)] = limit
+        allowed[chain.names.index(name)] = limit
     return allowed
 
 
-def _unwound(solver: Solver, angles: Array) -> Array:
+def _unwound(chain: Chain, angles: Array) -> Array:
     """Take jumps of full turns out of the axes that may turn all round (D-10)."""
-    free = solver.chain.high - solver.chain.low >= TURN - 1e-6
+    free = chain.high - chain.low >= TURN - 1e-6
     return np.where(free, np.unwrap(angles, axis=0), angles)
 
 
-def _unreached(samples: Samples, solver: Solver, solution: Solution) -> list[Failure]:
+def _unreached(samples: Samples, solution: Solution, tolerance: float) -> list[Failure]:
     distance, status = np.asarray(solution.distance), np.asarray(solution.status)
+    turned = np.zeros(len(samples))
+    if isinstance(solution, PoseSolution):
+        turned = np.asarray(solution.rotation_error)
     found: list[Failure] = []
     for number, kind in _KINDS.items():
-        found += _runs(kind, status == number, distance, solver.settings.tolerance, "", samples)
+        for run in _runs(kind, status == number, distance, tolerance, "", samples):
+            largest = float(turned[run.first : run.last + 1].max())
+            found.append(replace(run, turned=largest))
     return found
 
 
-def _past_limits(samples: Samples, solver: Solver, angles: Array) -> list[Failure]:
-    past = np.maximum(angles - solver.chain.high, solver.chain.low - angles)
-    return _by_axis("limit", past > ROUNDING, past, np.zeros(len(solver.chain)), solver, samples)
+def _jumps(samples: Samples, solution: Solution, angles: Array) -> list[Failure]:
+    if not isinstance(solution, PoseSolution):
+        return []
+    steps = np.abs(np.diff(angles, axis=0, prepend=angles[:1]))
+    found: list[Failure] = []
+    for row in np.flatnonzero(solution.jumped).tolist():
+        joint, axis = np.unravel_index(steps[row].argmax(), steps[row].shape)
+        name = f"{solution.chain.names[joint]} {AXES[axis]}"
+        here = np.arange(len(samples)) == row
+        found += _runs("jump", here, steps[:, joint, axis], 0.0, name, samples)
+    return found
 
 
-def _too_fast(samples: Samples, solver: Solver, angles: Array, allowed: Array) -> list[Failure]:
+def _past_limits(samples: Samples, chain: Chain, angles: Array) -> list[Failure]:
+    past = np.maximum(angles - chain.high, chain.low - angles)
+    return _by_axis("limit", past > ROUNDING, past, np.zeros(len(chain)), chain, samples)
+
+
+def _too_fast(samples: Samples, chain: Chain, angles: Array, allowed: Array) -> list[Failure]:
     if not np.isfinite(allowed).any():
         return []
     speeds = np.abs(_rates(samples.times, angles))
     fast = speeds > allowed[:, None] * (1.0 + ROUNDING)
-    return _by_axis("speed", fast, speeds, allowed, solver, samples)
+    return _by_axis("speed", fast, speeds, allowed, chain, samples)
 
 
 def _rates(times: Array, angles: Array) -> Array:
@@ -187,11 +234,11 @@ def _rates(times: Array, angles: Array) -> Array:
 
 
 def _by_axis(
-    kind: Kind, wrong: NDArray[np.bool_], sizes: Array, allowed: Array, solver: Solver, at: Samples
+    kind: Kind, wrong: NDArray[np.bool_], sizes: Array, allowed: Array, chain: Chain, at: Samples
 ) -> list[Failure]:
     found: list[Failure] = []
     for joint, axis in np.argwhere(wrong.any(axis=0)).tolist():
-        name = f"{solver.chain.names[joint]} {AXES[axis]}"
+        name = f"{chain.names[joint]} {AXES[axis]}"
         limit = float(allowed[joint])
         found += _runs(kind, wrong[:, joint, axis], sizes[:, joint, axis], limit, name, at)
     return found

@@ -24,11 +24,13 @@ class KeyPoint:
         position: In the world, (3,) [length].
         quaternion: Orientation in the world, unit, (w, x, y, z), (4,).
         name: For messages; may be empty.
+        angles: The joint angles it was made of, HPB, (n, 3) [rad]; None if of none.
     """
 
     position: Array
     quaternion: Array
     name: str = ""
+    angles: Array | None = None
 
     @classmethod
     def from_matrix(cls, matrix: ArrayLike, name: str = "") -> "KeyPoint":
@@ -88,10 +90,9 @@ class KeyPoint:
     @classmethod
     def from_joints(cls, chain: Chain, angles: ArrayLike, name: str = "") -> "KeyPoint":
         """Make a key point of the pose a chain's end has at joint angles HPB [rad], (n, 3)."""
-        positions, rotations = forward_kinematics(
-            chain, _array(angles, (len(chain), 3), "joint angles", name)
-        )
-        return cls(positions[-1].copy(), from_matrix(rotations[-1]), name)
+        pose = _array(angles, (len(chain), 3), "joint angles", name)
+        positions, rotations = forward_kinematics(chain, pose)
+        return cls(positions[-1].copy(), from_matrix(rotations[-1]), name, pose)
 
     @property
     def rotation(self) -> Array:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core.errors import Fault, InputError, SceneError
+from limbik.core.rotation import hpb_to_matrix
 from limbik.core.scene import Scene
 from limbik.core.trajectorymodel import LimitsModel, PointModel, StepModel, TrajectoryModel
 from limbik.core.wording import near_match
@@ -32,11 +33,16 @@ _ACCELERATIONS = {"acceleration", "deceleration"}
 _ANGLES = ("rotation_speed", "rotation_acceleration")
 
 
-def scene_trajectory(scene: Scene) -> Trajectory:
+def scene_trajectory(scene: Scene, turning: bool = False) -> Trajectory:
     """Plan the trajectory of a scene.
 
+    Args:
+        scene: The scene.
+        turning: Whether the end will be turned, so that every point needs an orientation.
+
     Raises:
-        SceneError: The scene has none, a point is unknown, or a move is impossible.
+        SceneError: The scene has none, a point is unknown or lacks something, or a move is
+            impossible.
         EnvironmentProblem: scipy is not installed.
     """
     model = scene.trajectory
@@ -45,7 +51,7 @@ def scene_trajectory(scene: Scene) -> Trajectory:
     if model.limits.speed is None:
         message = "the trajectory's limits need a speed"
         raise SceneError(scene.document.fault("missing-key", message, (ROOT, "limits")))
-    reader = _Reader(scene, model)
+    reader = _Reader(scene, model, turning)
     start = reader.point(model.start, (ROOT, "start"))
     steps = [reader.step(step, number) for number, step in enumerate(model.program)]
     try:
@@ -54,11 +60,15 @@ def scene_trajectory(scene: Scene) -> Trajectory:
         raise SceneError([reader.placed(fault) for fault in error.faults]) from error
 
 
+def _has_orientation(given: PointModel) -> bool:
+    return any((given.matrix, given.quaternion, given.euler, given.joints))
+
+
 class _Reader:
     """Looks names up and builds moves."""
 
-    def __init__(self, scene: Scene, model: TrajectoryModel) -> None:
-        self.scene, self.model = scene, model
+    def __init__(self, scene: Scene, model: TrajectoryModel, turning: bool) -> None:
+        self.scene, self.model, self.turning = scene, model, turning
         self.known: dict[str, KeyPoint] = {}
 
     def point(self, name: str, path: KeyPath) -> KeyPoint:
@@ -72,7 +82,11 @@ class _Reader:
                 raise SceneError(
                     self.scene.document.fault("unknown-point", message, path, hint=hint)
                 )
-            self.known[name] = self._made(name, given or PointModel())
+            given = given or PointModel()
+            if self.turning and not self._is_oriented(name, given):
+                message = f"'{name}' needs an orientation: the scene's solver turns the end to it"
+                raise SceneError(self.scene.document.fault("missing-key", message, path))
+            self.known[name] = self._made(name, given)
         return self.known[name]
 
     def _made(self, name: str, given: PointModel) -> KeyPoint:
@@ -106,8 +120,18 @@ class _Reader:
         if name not in self.scene.goal_names:
             message = f"it needs a position: no goal is called '{name}'"
             raise SceneError(self.scene.document.fault("missing-key", message, path))
-        goal = self.scene.goals[self.scene.goal_names.index(name)]
+        row = self.scene.goal_names.index(name)
+        goal, turns = self.scene.goals[row], self.scene.goal_turns
+        if turns is not None and not _has_orientation(given) and self._is_oriented(name, given):
+            return KeyPoint.from_rotation(goal, hpb_to_matrix(turns[row]), name)
         return KeyPoint(goal, point.quaternion, name)
+
+    def _is_oriented(self, name: str, given: PointModel) -> bool:
+        """Whether a point has an orientation of its own or its goal's."""
+        names, turns = self.scene.goal_names, self.scene.goal_turns
+        if _has_orientation(given) or turns is None or name not in names:
+            return _has_orientation(given)
+        return given.position is None and not np.isnan(turns[names.index(name)]).any()
 
     def _angles(self, given: PointModel, path: KeyPath) -> Any:
         names, angles = self.scene.chain.names, np.array(self.scene.chain.rest)

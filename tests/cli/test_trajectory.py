@@ -111,3 +111,83 @@ def test_without_scipy_it_ends_with_3_and_names_the_extra(
 
     assert status == 3
     assert "pip install 'limbik[trajectory]'" in err
+
+
+POSES = """\
+limbik: 1
+solver: refine
+chain:
+  joints:
+    - {name: shoulder, heading: [-120, 120], pitch: [-90, 90], bank: [-90, 90]}
+    - {name: elbow, offset: [0, 0, 3], heading: 0, pitch: [0, 150], bank: 0, rest: [0, 60, 0]}
+    - {name: wrist, offset: [0, 0, 3], heading: [-80, 80], pitch: [-80, 80], bank: [-80, 80]}
+    - {name: hand, offset: [0, 0, 1], heading: 0, pitch: 0, bank: 0}
+options: {tolerance: 0.0001}
+trajectory:
+  dt: 0.1
+  limits: {speed: 1, acceleration: 2}
+  points:
+    a: {position: [0, 3, 4], euler: [0, 20, 0], convention: hpb}
+    b: {position: [1, 3, 4], euler: [0, 40, 20], convention: hpb}
+  start: a
+  program: [{line: {to: b}}]
+"""
+
+
+def test_without_goals_a_trajectory_solves_position_and_orientation(
+    run: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "poses.yaml").write_text(POSES, encoding="utf-8")
+    status, out, _ = run("trajectory", "poses.yaml", "--json", "--npz=p.npz")
+    record = json.loads(out)
+
+    assert (status, record["status"], record["orientation_solved"]) == (0, "ok", True)
+    assert record["largest_orientation_error"] < 1e-4
+    assert np.load(tmp_path / "p.npz")["orientation_error"].max() < 1e-6
+    assert run("check", "poses.yaml")[0] == 0
+    status, _, err = run("solve", "poses.yaml")
+    assert status == 2
+    assert "the scene has no goals" in err
+    assert "'limbik trajectory'" in err
+
+
+def test_servo_ticks_go_into_the_files(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "poses.yaml").write_text(POSES, encoding="utf-8")
+    profile = "servo: 1\njoints:\n  elbow pitch: {id: 5}\n"
+    (tmp_path / "servos.yaml").write_text(profile, encoding="utf-8")
+    told = ("trajectory", "poses.yaml", "--servo", "servos.yaml")
+    status, out, _ = run(*told, "--csv=s.csv", "--npz=s.npz")
+    record = json.loads(run(*told, "--json")[1])
+    rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+    arrays = dict(np.load(tmp_path / "s.npz"))
+    ticks = [int(row["servo 5 elbow pitch"]) for row in rows]
+
+    assert status == 0
+    assert "1 servos, off the path by up to" in out
+    assert ticks == arrays["servo_ticks"][:, 0].tolist() == record["columns"]["servo 5 elbow pitch"]
+    assert arrays["servo_ids"].tolist() == [5]
+    elbow = np.array([float(row["elbow pitch"]) for row in rows])
+    np.testing.assert_allclose(ticks, 512.0 + elbow * 1023 / 300, atol=0.5)
+
+
+def test_a_solver_of_positions_alone_is_refused(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "f.yaml").write_text(POSES.replace("solver: refine", "solver: fabrik"), "utf-8")
+    status, _, err = run("trajectory", "f.yaml")
+
+    assert status == 2
+    assert "a trajectory needs 3d or a solver of pose goals, not 'fabrik'" in err
+
+
+@pytest.mark.parametrize("elbow", [40.0, -40.0])
+def test_the_joint_angles_of_the_start_choose_the_fold(
+    run: Run, tmp_path: Path, elbow: float
+) -> None:
+    text = POSES.replace("pitch: [0, 150]", "pitch: [-150, 150]")
+    joints = f"a: {{joints: {{shoulder: [0, {-elbow}, 0], elbow: [0, {elbow}, 0]}}}}"
+    text = text.replace("a: {position: [0, 3, 4], euler: [0, 20, 0], convention: hpb}", joints)
+    (tmp_path / "fold.yaml").write_text(text.replace("[1, 3, 4]", "[0.3, 0, 6]"), encoding="utf-8")
+    run("trajectory", "fold.yaml", "--npz=f.npz")
+    angles = np.load(tmp_path / "f.npz")["angles"]
+
+    assert np.degrees(angles[0, 1, 1]) == pytest.approx(elbow, abs=1e-4)
+    assert (np.sign(angles[:, 1, 1]) == np.sign(elbow)).all()

@@ -187,26 +187,6 @@ def test_the_jvrc_humanoid_moves_as_an_independent_reader_says(urdf_pose: Pose) 
             np.testing.assert_allclose(turns[k, -1], Z_UP.rotations(turn), atol=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore")
-def test_the_jvrc_humanoid_moves_as_yourdfpy_says() -> None:
-    """To 1e-9 for every limb, over random configurations."""
-    yourdfpy = pytest.importorskip("yourdfpy")
-    jvrc = pytest.importorskip("jvrc_description")
-    path = Path(jvrc.__file__).parent / "urdf" / "jvrc1.urdf"
-    robot = yourdfpy.URDF.load(str(path), load_meshes=False, build_scene_graph=True)
-    for base, end in every_chain(path):
-        body = read_body(UrdfModel(urdf=str(path), base=base, end=end, rest={}), Path())
-        angles = random_angles(body.chain, 5)
-        places, turns = forward_kinematics(body.chain, angles)
-        values = body.values(angles)
-        assert values is not None
-        for k, row in enumerate(values.rows):
-            robot.update_cfg(dict(zip(values.names, row.tolist(), strict=True)))
-            pose = robot.get_transform(end, base)
-            np.testing.assert_allclose(places[k, -1], Z_UP.points(pose[:3, 3]), atol=1e-9)
-            np.testing.assert_allclose(turns[k, -1], Z_UP.rotations(pose[:3, :3]), atol=1e-9)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("path", corpus(), ids=lambda path: path.name)
 def test_a_real_robot_is_read_or_refused_with_a_place(path: Path) -> None:

@@ -1,0 +1,46 @@
+"""How a goal is turned: heading, pitch, bank, a quaternion or a matrix become HPB angles."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from limbik.core.rotation import Array, matrix_to_hpb
+
+UNIT = 1e-3  # largest error of a quaternion's length that is taken for rounding of the input
+SQUARE = 1e-6  # likewise of RᵀR
+
+
+def quaternion_to_hpb(quaternion: ArrayLike) -> Array:
+    """Return the HPB angles [rad] of a quaternion (w, x, y, z).
+
+    Raises:
+        ValueError: Its length is not 1.
+    """
+    q = np.asarray(quaternion, np.float64)
+    length = float(np.linalg.norm(q))
+    if abs(length - 1.0) > UNIT:
+        raise ValueError(f"a quaternion must have length 1, this one has {length:g}")
+    w, x, y, z = q / length
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return matrix_to_hpb(rows)
+
+
+def matrix_turn(matrix: ArrayLike) -> Array:
+    """Return the HPB angles [rad] of a homogeneous matrix, (4, 4).
+
+    Raises:
+        ValueError: Its last row is not 0 0 0 1, or it does not only turn.
+    """
+    whole = np.asarray(matrix, np.float64)
+    if np.abs(whole[3] - (0.0, 0.0, 0.0, 1.0)).max() > SQUARE:
+        raise ValueError("the matrix's last row must be 0 0 0 1")
+    turn = whole[:3, :3]
+    if np.abs(turn.T @ turn - np.eye(3)).max() > SQUARE or np.linalg.det(turn) < 0.0:
+        raise ValueError(
+            "the matrix's first three columns must have length 1, stand at right angles and not "
+            "mirror"
+        )
+    return matrix_to_hpb(turn)

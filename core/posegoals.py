@@ -1,0 +1,136 @@
+"""Goals with an orientation: what solves them, and what it gives back (M-13)."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from limbik.core.binding import Bound
+from limbik.core.chain import Chain
+from limbik.core.errors import Fault
+from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.scenemodel import SceneModel, SolveModel
+from limbik.core.settings import Settings
+from limbik.core.solution import Continuity, Solution
+from limbik.core.whole import OWN_SOLVERS, Batch, WholeSolution, prepare
+from limbik.core.yamlfile import Document
+
+
+@dataclass(frozen=True, slots=True)
+class PoseSolution(WholeSolution):
+    """A solution of goals with an orientation (M-13).
+
+    Attributes:
+        goal_rotation: World rotations asked for, (3, 3) or (m, 3, 3); NaN where none was.
+        rotation_error: Angle left to them [rad]; (m,) for many; 0 where none was asked for.
+        jumped: Whether the chain had to go over into another fold, or turn farther than the step of
+            the goal explains, on a path; (m,) for many.
+    """
+
+    goal_rotation: Array = field(default_factory=lambda: np.full((3, 3), np.nan))
+    rotation_error: float | Array = 0.0
+    jumped: bool | NDArray[np.bool_] = False
+
+
+class PoseBatch(ABC):
+    """A whole solver, ready for a chain, whose goals may have an orientation.
+
+    Attributes:
+        chain: The chain.
+        tolerance: Distance that counts as reached [length].
+        angle: Angle that counts as reached [rad].
+    """
+
+    chain: Chain
+    tolerance: float
+    angle: float
+
+    def __call__(self, goals: Array, follow: bool) -> Solution:
+        """Solve goals without an orientation, (m, 3) [length]."""
+        return self.solve_poses(goals, None, follow)
+
+    @abstractmethod
+    def solve_poses(
+        self, goals: Array, rotations: Array | None, follow: bool, near: Array | None = None
+    ) -> PoseSolution:
+        """Solve poses, as a path or each on its own.
+
+        Args:
+            goals: World positions, (m, 3) [length].
+            rotations: World rotations, (m, 3, 3); NaN, or None, where the orientation is free.
+            follow: Whether each is solved from the pose of the one before.
+            near: Pose to start from, HPB, (n, 3) [rad]; the rest pose if absent.
+        """
+
+
+def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) -> Solution:
+    """Solve goals with a whole solver; one that does not turn the end leaves orientations aside.
+
+    Args:
+        batch: The solver, ready for its chain.
+        goals: World positions, (m, 3) [length].
+        turns: World orientations, HPB, (m, 3) [rad]; NaN for goals without, None if none has one.
+        follow: Whether each is solved from the pose of the one before.
+    """
+    if turns is None or not isinstance(batch, PoseBatch):
+        return batch(goals, follow)
+    return batch.solve_poses(goals, hpb_to_matrix(turns), follow)
+
+
+class WholeSolver:
+    """A solver of a plug-in for one chain, called as `limbik.core.solver.Solver` is.
+
+    Args:
+        bound: The solver.
+        chain: What to pose.
+        settings: Options.
+
+    Raises:
+        ChainError: It does not solve this kind of chain.
+        PluginError: It failed.
+    """
+
+    def __init__(self, bound: Bound, chain: Chain, settings: Settings) -> None:
+        self._bound, self._settings = bound, settings
+        self.chain = chain
+        self._batch = prepare(bound, chain, settings)
+
+    def moved(self, position: Array, rotation: Array) -> "WholeSolver":
+        """Return the solver for the chain with its base elsewhere."""
+        return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)
+
+    def solve(
+        self,
+        goal: Array,
+        *,
+        goal_rotation: Array | None = None,
+        fk_offsets: Array | None = None,
+        continuity: Continuity | None = None,
+        trace: bool = False,
+    ) -> Solution:
+        """Solve one goal.
+
+        A solver of pose goals follows the orientation too, (3, 3) or NaN; such solvers have no use
+        for the rest.
+        """
+        rows = np.asarray(goal, np.float64).reshape(1, 3)
+        if not isinstance(self._batch, PoseBatch):
+            return self._batch(rows, False).single(0)
+        turned = None if goal_rotation is None else goal_rotation[None]
+        return self._batch.solve_poses(rows, turned, False).single(0)
+
+
+def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
+    """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
+    planned = isinstance(model, SceneModel) and model.trajectory is not None
+    if turns_end or planned or model.solver == "2d" or not isinstance(model.goals, list):
+        return
+    if model.solver in OWN_SOLVERS and model.options.end_orientation:
+        return
+    for number, goal in enumerate(model.goals):
+        if goal.turn is not None:
+            message = "its orientation has no effect: the scene's solver goes to positions alone"
+            hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
+            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)

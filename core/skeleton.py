@@ -1,0 +1,203 @@
+"""A skeleton: joints that hang from each other, and the limbs cut out of it to be solved.
+
+A scene with several chains has one. Every joint of a skeleton has one turn relative to its parent;
+a limb is a chain whose angles stand for the turns of its joints. Formats bring skeletons of their
+own, see `limbik.core.formats.SceneInput`; the one here is that of joints written out in a scene.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Final
+
+import numpy as np
+
+from limbik.core.chain import Chain, Joint
+from limbik.core.errors import Fault, InputError
+from limbik.core.formats import Body, Motion
+from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.wording import near_match
+
+WORLD: Final = -1
+STILL: Final = 1.0 / 30.0  # seconds a frame, of a skeleton that does not move by itself
+
+
+@dataclass(frozen=True, eq=False)
+class Limb(Body):
+    """A chain of a skeleton.
+
+    Attributes:
+        at: Index in the skeleton of each of the chain's n joints.
+        before, after: What a joint's angles stand between: its turn relative to its parent in the
+            skeleton is `before @ HPB(angles) @ after`, (n, 3, 3).
+        written: How many of the joints take the angles; all, or all but the end.
+    """
+
+    at: tuple[int, ...] = field(kw_only=True)
+    before: Array = field(kw_only=True)
+    after: Array = field(kw_only=True)
+    written: int = field(kw_only=True)
+
+    @property
+    def turned(self) -> tuple[int, ...]:
+        """Joints of the skeleton that a solve turns: all but the end."""
+        return self.at[:-1]
+
+    def turns(self, angles: Array) -> Array:
+        """Return the turns of the first `written` joints, (..., written, 3, 3), for angles [rad].
+
+        Args:
+            angles: HPB, (..., n, 3) [rad].
+        """
+        count = self.written
+        own = hpb_to_matrix(angles[..., :count, :])
+        return np.asarray(self.before[:count] @ own @ self.after[:count])
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Joints that hang from each other, standing still or moving.
+
+    Attributes:
+        motion: The skeleton before anything is solved: one frame, or those of its own motion.
+        notes: What the user should know, one sentence each.
+    """
+
+    motion: Motion
+    notes: tuple[str, ...] = ()
+    whole: ClassVar[str] = "skeleton"
+    part: ClassVar[str] = "joint"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the joints, parents before their children."""
+        return self.motion.names
+
+    @property
+    def parents(self) -> tuple[int, ...]:
+        """Index of each joint's parent; -1 for a root."""
+        return self.motion.parents
+
+    def limb(self, base: str, end: str) -> Limb:
+        """Cut out the chain from one joint down to another, standing as in the first frame.
+
+        Raises:
+            InputError: There is no such joint, or the one does not hang from the other; the keys of
+                the faults are `base` and `end`.
+            ChainError: It makes no chain.
+        """
+        raise NotImplementedError
+
+    def at(self, name: str, key: str = "") -> int:
+        """Return the index of a joint.
+
+        Raises:
+            InputError: There is none of this name.
+        """
+        if name in self.names:
+            return self.names.index(name)
+        known = f"{self.part}s: {', '.join(self.names[:12])}"
+        hint = near_match(name, list(self.names)) or known
+        message = f"the {self.whole} has no {self.part} '{name}'"
+        raise InputError(Fault(f"unknown-{self.part}", message, key, hint=hint))
+
+    def above(self, joint: int) -> list[int]:
+        """Return a joint and all it hangs from, upward."""
+        way = [joint]
+        while self.parents[way[-1]] >= 0:
+            way.append(self.parents[way[-1]])
+        return way
+
+    def way(self, base: str, end: str) -> list[int]:
+        """Return the joints from one down to another.
+
+        Raises:
+            InputError: As `limb`.
+        """
+        faults: list[Fault] = []
+        for key, name in (("base", base), ("end", end)):
+            try:
+                self.at(name, key)
+            except InputError as error:
+                faults += error.faults
+        if faults:
+            raise InputError(faults)
+        way = self.above(self.at(end))
+        first = self.at(base)
+        if first not in way[1:]:
+            above = ", ".join(self.names[joint] for joint in way[1:13]) or "nothing, it is a root"
+            message = f"the {self.part} '{end}' does not hang from '{base}'"
+            raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
+        return way[way.index(first) :: -1]
+
+    def seen_from(self, joint: int, places: Array) -> Array:
+        """Return world positions, one a frame, in the axes of a joint of the skeleton's own motion.
+
+        Args:
+            joint: Its index.
+            places: (m, 3) [length].
+        """
+        positions, rotations = self.motion.world()
+        away = places - positions[:, joint]
+        return np.asarray((rotations[:, joint].swapaxes(-1, -2) @ away[..., None])[..., 0])
+
+    def placed(self, limb: Limb, positions: Array, rotations: Array) -> tuple[Array, Array]:
+        """Return where a limb's base is and how it is turned.
+
+        Args:
+            limb: The limb.
+            positions: World positions of the skeleton's joints, (..., n, 3) [length].
+            rotations: World rotations, (..., n, 3, 3).
+        """
+        parent = self.parents[limb.at[0]]
+        still = np.broadcast_to(np.eye(3), (*rotations.shape[:-3], 3, 3))
+        turn = still if parent < 0 else rotations[..., parent, :, :]
+        return positions[..., limb.at[0], :], turn
+
+
+@dataclass(frozen=True, eq=False)
+class JointSkeleton(Skeleton):
+    """A skeleton of limbik's own joints; a root's offset and frozen rotation are in the world."""
+
+    joints: tuple[Joint, ...] = field(kw_only=True)
+
+    @classmethod
+    def of(cls, joints: Sequence[Joint], parents: Sequence[int]) -> "JointSkeleton":
+        """Make a skeleton.
+
+        Args:
+            joints: n joints, parents before their children.
+            parents: Index of each joint's parent; -1 for a root.
+
+        Raises:
+            InputError: A parent does not come before its child, or a name is given twice.
+        """
+        names = tuple(joint.name for joint in joints)
+        for index, (name, parent) in enumerate(zip(names, parents, strict=True)):
+            if not WORLD <= parent < index:
+                raise InputError(f"joint '{name}': its parent must come before it")
+            if name in names[:index]:
+                raise InputError(f"two joints are called '{name}'")
+        zero = hpb_to_matrix([joint.frozen for joint in joints])
+        turns = zero @ hpb_to_matrix([joint.rest for joint in joints])
+        offsets = np.array([joint.offset for joint in joints], np.float64)
+        motion = Motion(names, tuple(parents), offsets[None], turns[None], zero, STILL)
+        return cls(motion, joints=tuple(joints))
+
+    def limb(self, base: str, end: str) -> Limb:
+        """Cut out a chain."""
+        at = self.way(base, end)
+        joints = [self.joints[index] for index in at]
+        joints[0] = replace(joints[0], offset=(0.0, 0.0, 0.0))
+        still = np.repeat(np.eye(3)[None], len(at), axis=0)
+        chain, before = Chain(joints), self.motion.zero[at]
+        limb = Limb(chain, at=tuple(at), before=before, after=still, written=len(at))
+        return standing(self, limb)
+
+
+def standing(skeleton: Skeleton, limb: Limb) -> Limb:
+    """Return a limb whose chain stands where the skeleton's first frame has it."""
+    motion = skeleton.motion
+    first = replace(motion, offsets=motion.offsets[:1], turns=motion.turns[:1])
+    places, turns = first.world()
+    place, turn = skeleton.placed(limb, places[0], turns[0])
+    return replace(limb, chain=limb.chain.moved(place, turn))

@@ -1,0 +1,1 @@
+"""Experiments: strategies x options x chains x goals, solved in batches, kept as a table."""

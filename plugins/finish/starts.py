@@ -1,0 +1,49 @@
+"""Where a descent starts again when limits have stopped it."""
+
+from math import inf, pi
+
+from limbik.core.jit import kernel
+from limbik.core.kernels.rotation import wrap_angle
+from limbik.core.rotation import Array
+from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage, pull_inside
+
+PUSH = 0.1  # [rad]
+
+
+@kernel
+def off_home(chain: Linkage, scratch: Array) -> None:
+    """Write HOME into ANGLES, every axis pushed by a little, up where its range allows."""
+    for joint in range(chain.offsets.shape[0]):
+        for axis in range(3):
+            low, high = chain.low[joint, axis], chain.high[joint, axis]
+            angle = scratch[joint, HOME + axis]
+            up, down = angle + PUSH, max(angle - PUSH, low)
+            scratch[joint, ANGLES + axis] = up if up <= high else down
+        pull_inside(ANGLES, joint, chain, scratch)
+
+
+@kernel
+def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
+    """Write another start into ANGLES: HOME, its mirror image, middles of ranges, then spread.
+
+    Args:
+        number: From 0; the same number gives the same start.
+        chain: The chain.
+        scratch: (n, WIDTH).
+    """
+    state = number * 7919 + 1
+    for joint in range(chain.offsets.shape[0]):
+        for axis in range(3):
+            low, high = chain.low[joint, axis], chain.high[joint, axis]
+            angle = scratch[joint, HOME + axis]
+            state = (state * 1103515245 + 12345) % 2147483648
+            share = state / 2147483648.0
+            limited = high < inf
+            if number == 1:
+                angle = low + high - angle if limited else angle
+            elif number == 2:
+                angle = 0.5 * (low + high) if limited else angle
+            elif number > 2:
+                angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
+            scratch[joint, ANGLES + axis] = angle
+        pull_inside(ANGLES, joint, chain, scratch)

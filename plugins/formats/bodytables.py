@@ -1,0 +1,142 @@
+"""The outputs `csv`, `json` and `npz` of scenes with several chains.
+
+What is a chain's own stands under the chain's name; positions are those of the whole skeleton.
+"""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from limbik.core.chain import AXES
+from limbik.core.formats import BodyBake, Values
+from limbik.core.frames import Y_UP
+from limbik.core.mirror import side_swapped
+from limbik.core.rotation import Array
+from limbik.core.solution import Solution, Status
+
+
+def body_rows(
+    names: Sequence[str],
+    solutions: Mapping[str, Solution],
+    times: Sequence[float] | None = None,
+    values: Mapping[str, Values] | None = None,
+) -> str:
+    """Write a CSV table, one line a frame: each chain's goal, status, distance, rounds and angles.
+
+    Args:
+        names: m names of frames.
+        solutions: Of each chain, with a leading goal axis.
+        times: m times [s]; absent = no such column.
+        values: A model's own joint values, of chains that have some.
+    """
+    head = ["name", *([] if times is None else ["time"])]
+    columns: list[list[Any]] = [list(names), *([] if times is None else [list(times)])]
+    for chain, solution in solutions.items():
+        angles = np.degrees(solution.angles).reshape(len(names), -1)
+        joints = [f"{joint} {axis}" for joint in solution.chain.names for axis in AXES]
+        own = (values or {}).get(chain)
+        model = [f"{name} [{own.unit}]" for name in own.names] if own else []
+        titles = ["x", "y", "z", "status", "distance", "iterations", *joints, *model]
+        head += [f"{chain}: {title}" for title in titles]
+        columns += solution.goal.T.tolist()
+        columns += [labels(solution), np.asarray(solution.distance).tolist()]
+        columns += [np.asarray(solution.iterations).tolist(), *angles.T.tolist()]
+        columns += own.rows.T.tolist() if own else []
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(zip(*columns, strict=True))
+    return text.getvalue()
+
+
+def labels(solution: Solution) -> list[str]:
+    """Give the status of every goal as a word."""
+    return [Status(int(status)).label for status in np.asarray(solution.status)]
+
+
+def _values(bake: BodyBake) -> dict[str, Values]:
+    """Models' own joint values; a mirrored motion is not one of the model any more."""
+    parts = () if bake.mirrored else bake.scene.parts
+    found = {part.name: part.limb.values(bake.solutions[part.name].angles) for part in parts}
+    return {name: values for name, values in found.items() if values is not None}
+
+
+def _world(bake: BodyBake) -> tuple[list[str], Array, Array]:
+    """Names, world positions and rotations of the whole skeleton, mirrored if asked for."""
+    positions, rotations = bake.motion.world()
+    names = list(bake.motion.names)
+    if bake.mirrored:
+        return side_swapped(names), Y_UP.points(positions), Y_UP.rotations(rotations)
+    return names, positions, rotations
+
+
+def write_body_csv(bake: BodyBake) -> str:
+    """Write one line a frame."""
+    times = [frame * bake.frame_time for frame in range(len(bake.scene.frame_names))]
+    return body_rows(bake.scene.frame_names, bake.solutions, times, _values(bake))
+
+
+def write_body_json(bake: BodyBake) -> str:
+    """Write one JSON object: the skeleton's positions, and the columns of each chain."""
+    from limbik.plugins.output.records import to_json
+
+    names, positions, _ = _world(bake)
+    values = _values(bake)
+    chains = {}
+    for name, solution in bake.solutions.items():
+        chains[name] = {
+            "joints": list(solution.chain.names),
+            "metrics": bake.metrics[name],
+            "goals": solution.goal.tolist(),
+            "status": labels(solution),
+            "distance": np.asarray(solution.distance).tolist(),
+            "iterations": np.asarray(solution.iterations).tolist(),
+            "angles": np.degrees(solution.angles).tolist(),
+        }
+        if own := values.get(name):
+            rows = {"names": list(own.names), "unit": own.unit, "rows": own.rows.tolist()}
+            chains[name]["model_values"] = rows
+    record = {
+        "scene": bake.scene.document.name,
+        "mirrored": bake.mirrored,
+        "frame_time": bake.frame_time,
+        "joints": names,
+        "parents": list(bake.motion.parents),
+        "names": list(bake.scene.frame_names),
+        "positions": positions.tolist(),
+        "chains": chains,
+    }
+    return to_json(record) + "\n"
+
+
+def write_body_npz(bake: BodyBake) -> bytes:
+    """Write arrays: the skeleton's, and those of each chain as `chain/array`."""
+    names, positions, rotations = _world(bake)
+    arrays: dict[str, Any] = {
+        "joints": np.array(names),
+        "parents": np.array(bake.motion.parents),
+        "names": np.array(bake.scene.frame_names),
+        "frame_time": np.array(bake.frame_time),
+        "positions": positions,
+        "rotations": rotations,
+        "chains": np.array(list(bake.solutions)),
+    }
+    for name, solution in bake.solutions.items():
+        own = {
+            "joints": np.array(solution.chain.names),
+            "goals": solution.goal,
+            "angles": solution.angles,
+            "status": np.asarray(solution.status),
+            "distance": np.asarray(solution.distance),
+            "iterations": np.asarray(solution.iterations),
+        }
+        arrays |= {f"{name}/{key}": array for key, array in own.items()}
+    for name, values in _values(bake).items():
+        arrays[f"{name}/model_names"] = np.array(values.names)
+        arrays[f"{name}/model_values"] = values.rows
+    content = io.BytesIO()
+    np.savez_compressed(content, **arrays)
+    return content.getvalue()

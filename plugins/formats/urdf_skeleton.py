@@ -1,0 +1,134 @@
+"""A whole robot as the skeleton of a scene with several chains.
+
+```yaml
+skeleton: {urdf: robot.urdf, rest: {left_elbow: -40}}
+chains:
+  - {name: left arm, base: chest, end: left_hand, goals: [{position: [0.3, 0.4, 0.2]}]}
+```
+
+The joints of the skeleton are the robot's links, each turned by the joint that carries it; links
+that slide or copy another joint keep their zero. The root link's frame is limbik's world.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from limbik.core.errors import Fault, InputError
+from limbik.core.formats import Motion
+from limbik.core.frames import Z_UP, rpy_to_matrix, turn_about
+from limbik.core.rotation import Array
+from limbik.core.scenemodel import Angle
+from limbik.core.settings import Model
+from limbik.core.skeleton import STILL, Skeleton
+from limbik.core.wording import near_match
+from limbik.plugins.formats.joining import ModelJoint
+from limbik.plugins.formats.limbs import ModelLimb, model_limb
+from limbik.plugins.formats.urdf import Robot, UrdfJoint, read_urdf
+from limbik.plugins.formats.urdf_chain import refusals, rest_value
+
+
+class UrdfSkeletonModel(Model):
+    """A whole robot."""
+
+    urdf: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+    scale: Annotated[
+        float, Field(gt=0.0, le=1e6, description="scene lengths a metre of the robot [-]")
+    ] = 1.0
+    rest: Annotated[
+        dict[str, Angle],
+        Field(default_factory=dict, description="initial values of hinges [deg], else 0"),
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfSkeleton(Skeleton):
+    """A robot's links."""
+
+    carriers: tuple[UrdfJoint | None, ...] = field(kw_only=True)
+    rest: dict[str, float] = field(kw_only=True)
+    whole: ClassVar[str] = "robot"
+    part: ClassVar[str] = "link"
+
+    def limb(self, base: str, end: str) -> ModelLimb:
+        """Cut out a chain of hinges; fixed joints are merged into the next one."""
+        way = self.way(base, end)[1:]
+        carriers = [joint for link in way if (joint := self.carriers[link]) is not None]
+        faults = [fault for joint in carriers for fault in refusals(joint)]
+        if not faults and not any(joint.is_hinge for joint in carriers):
+            message = f"there is no hinge between '{base}' and '{end}'"
+            faults = [Fault("chain", message, "end")]
+        if faults:
+            raise InputError(faults)
+        models: list[ModelJoint] = []
+        notes: list[str] = []
+        at: list[int] = []
+        place, turn = np.zeros(3), np.eye(3)
+        for link, joint in zip(way, carriers, strict=True):
+            place = place + turn @ self.motion.offsets[0, link]
+            turn = turn @ self.motion.zero[link]
+            if not joint.is_hinge:
+                continue
+            if not models:  # the base of the chain stands in its first hinge
+                place, turn = np.zeros(3), self.motion.zero[link]
+            rest, note = rest_value(joint, self.rest)
+            notes += note
+            axis = Z_UP.points(joint.axis)
+            models.append(ModelJoint(joint.name, place, turn, "hinge", axis, joint.limit, rest))
+            at.append(link)
+            place, turn = np.zeros(3), np.eye(3)
+        name = end
+        while name in {model.name for model in models}:
+            name += " link"
+        models.append(ModelJoint(name, place, turn, "fixed"))
+        return model_limb(self, models, [*at, way[-1]], tuple(notes), "rad")
+
+
+def read_skeleton(model: UrdfSkeletonModel, folder: Path) -> UrdfSkeleton:
+    """Make a skeleton of a robot.
+
+    Raises:
+        InputError: The file is at fault, or has no such hinge.
+    """
+    robot = read_urdf(folder / model.urdf)
+    hinges = [joint.name for joint in robot.joints.values() if joint.is_hinge]
+    faults = []
+    for name in model.rest:
+        if name not in hinges:
+            hint = near_match(name, hinges) or f"hinges: {', '.join(hinges[:12])}"
+            message = f"the robot has no hinge '{name}'"
+            faults.append(Fault("unknown-joint", message, "rest", hint=hint))
+    if faults:
+        raise InputError(faults)
+    return _skeleton(robot, model)
+
+
+def _skeleton(robot: Robot, model: UrdfSkeletonModel) -> UrdfSkeleton:
+    links = sorted(robot.links, key=lambda link: len(robot.up_from(link)))
+    carriers = [robot.joints.get(link) for link in links]
+    offsets, zero, turns = [], [], []
+    for joint in carriers:
+        if joint is None:
+            offsets.append(np.zeros(3))
+            zero.append(np.eye(3))
+            turns.append(np.eye(3))
+            continue
+        offsets.append(Z_UP.points(joint.place) * model.scale)
+        zero.append(Z_UP.rotations(rpy_to_matrix(joint.turn)))
+        turns.append(zero[-1] @ _own(joint, model))
+    parents = tuple(-1 if joint is None else links.index(joint.parent) for joint in carriers)
+    motion = Motion(
+        tuple(links), parents, np.array([offsets]), np.array([turns]), np.array(zero), STILL
+    )
+    return UrdfSkeleton(motion, robot.notes, carriers=tuple(carriers), rest=model.rest)
+
+
+def _own(joint: UrdfJoint, model: UrdfSkeletonModel) -> Array:
+    """A joint's own rotation in the rest pose."""
+    if not joint.is_hinge or joint.mimics:
+        return np.eye(3)
+    value, _ = rest_value(joint, model.rest)
+    return Z_UP.rotations(turn_about(joint.axis, value))

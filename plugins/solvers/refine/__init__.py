@@ -1,0 +1,1 @@
+"""Pose goals: position and orientation of the end, within the limits (M-13)."""
