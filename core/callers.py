@@ -18,6 +18,7 @@ from limbik.core.slots import (
     FINISH,
     INITIAL_BEND,
     LIMIT,
+    LIMIT_TASK,
     ROOT_CONTROL,
 )
 
@@ -29,6 +30,7 @@ _root_control = invoker(ROOT_CONTROL)
 _bank_suppression = invoker(BANK_SUPPRESSION)
 _finish = invoker(FINISH)
 _limit = invoker(LIMIT)
+_limit_task = invoker(LIMIT_TASK)
 
 
 @entry
@@ -127,3 +129,10 @@ def call_limit(address: int, angles: Array, params_array: Array, margin: Array) 
     if not _limit(address, (angles, params_array, margin)):
         angles[:] = nan
         margin[:] = nan
+
+
+@entry
+def call_limit_task(address: int, task: int, limit: int, limit_params: Array, work: Array) -> None:
+    """Let a task be carried out on a joint with a limit of its own; `work` is IN/OUT."""
+    if not _limit_task(address, (task, limit, limit_params, limit_params, work)):
+        work[:] = nan

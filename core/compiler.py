@@ -19,7 +19,7 @@ import numba.extending
 from limbik.core import cache, sources
 from limbik.core.errors import PluginError
 from limbik.core.jit import COMPILES, Entry, Late
-from limbik.core.slots import SLOTS, Slot
+from limbik.core.slots import CALLED, Slot
 from limbik.core.strategy import Parameter, Strategy, layout, unflatten
 from limbik.core.wrappers import TEMPLATES
 
@@ -100,7 +100,7 @@ def native(slot: str, strategy: Strategy) -> int:
     with _LOCK:
         key = (slot, strategy)
         if key not in _NATIVE:
-            _NATIVE[key] = (_compile if COMPILES else _interpret)(SLOTS[slot], strategy)
+            _NATIVE[key] = (_compile if COMPILES else _interpret)(CALLED[slot], strategy)
         return _NATIVE[key][0]
 
 

@@ -11,8 +11,8 @@ from limbik.core.kernels.layout import Counts
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings, narrowing
-from limbik.core.slots import LIMIT, MAX_PARAMS
-from limbik.core.strategy import flatten, unflatten
+from limbik.core.slots import LIMIT, LIMIT_TASK, MAX_PARAMS
+from limbik.core.strategy import NoParams, Strategy, flatten, unflatten
 
 Limits = tuple[Bound | None, ...]
 
@@ -51,14 +51,20 @@ def refuse_limits(chain: Chain, solver: str) -> None:
 
 
 def flat_limits(chain: Chain, limits: Limits) -> tuple[Counts, Array]:
-    """Return addresses (n,), negative for mirrored limits, and parameters (n, 16); compiles."""
-    addresses = np.zeros(len(chain), np.int64)
+    """Return what `Plugs` has as limits, (n + 1,), and parameters, (n, 16); compiles."""
+    addresses = np.zeros(len(chain) + 1, np.int64)
     params = np.zeros((len(chain), MAX_PARAMS))
     for number, bound in enumerate(limits):
         if bound is not None:
             mirrored = chain.joints[number].mirrored
             addresses[number] = -bound.address if mirrored else bound.address
             params[number] = bound.values
+    if any(limits):
+        from limbik.core import compiler
+        from limbik.core.kernels.limit_tasks import limit_task
+
+        tasks = Strategy(LIMIT_TASK.name, limit_task, NoParams, "Tasks of limits.")
+        addresses[-1] = compiler.native(LIMIT_TASK.name, tasks)
     return addresses, params
 
 

@@ -138,9 +138,9 @@ def _finish_samples() -> list[Sample]:
     folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
 
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
-        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 36))
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 40))
         chain = (offsets, frozen, place, base, low, high)
-        limits = np.zeros(3, np.int64), np.zeros((3, MAX_PARAMS))
+        limits = np.zeros(4, np.int64), np.zeros((3, MAX_PARAMS))
         work = angles, rows, np.zeros(2)
         return (np.array(goal), 1e-3, 1.8, *chain, *limits, 1, None, *work)
 
@@ -230,12 +230,12 @@ FINISH = Slot(
             "low", "matrix", "(n, 3) limits, -inf where free, those of held joints equal [rad]"
         ),
         Argument("high", "matrix", "(n, 3) limits, inf where free [rad]"),
-        Argument("limits", "counts", "(n,) joints' own limits for `pulled_inside`, 0 = none"),
+        Argument("limits", "counts", "(n + 1,) joints' own limits for `do_task`, 0 = none"),
         Argument("limit_params", "matrix", "(n, 16) parameters of those limits"),
         Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
-        Argument("scratch", "matrix", "(n, 36) IN/OUT to work in, of any content", True),
+        Argument("scratch", "matrix", "(n, 40) IN/OUT to work in, of any content", True),
         Argument(
             "verdict",
             "vector",
@@ -272,6 +272,20 @@ LIMIT = Slot(
 )
 """A joint's own limit in place of ranges of heading, pitch and bank (M-08)."""
 
+LIMIT_TASK = Slot(
+    "limit_task",
+    "",
+    (
+        Argument("task", "count", "what is to be done"),
+        Argument("limit", "count", "address of the limit, negative for its mirror image"),
+        Argument("limit_params", "vector", "(16,) parameters of the limit"),
+        _PARAMS,
+        Argument("work", "vector", "IN/OUT see `limbik.core.kernels.limit.do_task`", True),
+    ),
+    list,
+)
+"""limbik's own work on joints with limits, compiled apart; no plug-in fills it."""
+
 OPTIONS: dict[str, Slot] = {
     slot.name: slot for slot in (INITIAL_BEND, BEND_VECTOR, ROOT_CONTROL, BANK_SUPPRESSION, FINISH)
 }
@@ -279,6 +293,9 @@ OPTIONS: dict[str, Slot] = {
 
 SLOTS: dict[str, Slot] = {**OPTIONS, LIMIT.name: LIMIT}
 """All that run compiled inside a solve: options, and the limits of joints."""
+
+CALLED: dict[str, Slot] = {**SLOTS, LIMIT_TASK.name: LIMIT_TASK}
+"""All that is called by address."""
 
 SOLVER = Slot(
     "solver",
@@ -298,7 +315,7 @@ HOOKED: dict[str, Slot] = {**SLOTS, SOLVER.name: SOLVER}
 
 def __getattr__(name: str) -> Any:
     """Load the callers on first use: they need the compiler, everything else here does not."""
-    if name.startswith("call_") and name.removeprefix("call_") in SLOTS:
+    if name.startswith("call_") and name.removeprefix("call_") in CALLED:
         from limbik.core import callers
 
         return getattr(callers, name)

@@ -96,7 +96,20 @@ def limit(angles: Array, params: Array, margin: Array) -> None:
     kernel(angles, rebuild(params), margin)
 
 
+def limit_task(task: int, limit: int, limit_params: Array, params: Array, work: Array) -> None:
+    """Enter the tasks of joints with limits of their own."""
+    kernel(task, limit, limit_params, rebuild(params), work)
+
+
 TEMPLATES: dict[str, Any] = {
     template.__name__: template
-    for template in (initial_bend, bend_vector, root_control, bank_suppression, finish, limit)
+    for template in (
+        initial_bend,
+        bend_vector,
+        root_control,
+        bank_suppression,
+        finish,
+        limit,
+        limit_task,
+    )
 }

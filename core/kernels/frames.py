@@ -6,7 +6,7 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
-from limbik.core.kernels.limit import MARGIN, TURN, pulled_inside
+from limbik.core.kernels.limit import pulled_inside
 from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
@@ -44,11 +44,11 @@ def new_pose(n: int) -> Pose:
         np.zeros(n, np.int64),
         np.zeros((3, n)),
         np.zeros((n, 3)),
-        np.zeros(n, np.int64),
+        np.zeros(n + 1, np.int64),
         np.zeros((n, MAX_PARAMS)),
         np.zeros((8, 3)),
         np.zeros((3, n, 3)),
-        np.zeros((n, 36)),
+        np.zeros((n, 40)),
         np.zeros(2),
     )
 
@@ -90,8 +90,8 @@ def place_from(first: int, body: Body, pose: Pose) -> None:
 def set_angles(joint: int, angles: Vector, pose: Pose) -> None:
     """Give a joint angles [rad], pulled into its own limit, and the rotation they make."""
     if pose.limits[joint] != 0:
-        limits, params, work = pose.limits, pose.limit_params[joint], pose.scratch
-        angles = pulled_inside(limits[joint], angles, params, work[TURN], work[MARGIN])
+        own = (pose.limits, pose.limit_params, pose.finish_rows[0])
+        angles = pulled_inside(joint, angles, *own)
     store_vector(angles, pose.angles, joint)
     store_matrix(hpb_to_matrix(angles), pose.relative, joint)
 

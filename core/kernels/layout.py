@@ -105,7 +105,8 @@ class Plugs(NamedTuple):
     params: Array
     """One row a slot in the order above, (5, 16)."""
     limits: Counts
-    """Addresses of the joints' own limits, (n,); 0 = none, negative = the mirror image of one."""
+    """Addresses of the joints' own limits, 0 = none, negative = the mirror image of one; last that
+    of what carries out tasks on such joints, (n + 1,)."""
     limit_params: Array
     """(n, 16)"""
 
@@ -140,7 +141,7 @@ class Pose(NamedTuple):
     directions: Array
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
     limits: Counts
-    """As in `Plugs`, (n,)."""
+    """As in `Plugs`, (n + 1,)."""
     limit_params: Array
     """(n, 16)"""
     scratch: Array
@@ -148,7 +149,7 @@ class Pose(NamedTuple):
     kept: Array
     """Angles set aside by the choice of a solution, (3, n, 3) [rad]."""
     finish_rows: Array
-    """What a finish works in, (n, 36)."""
+    """What a finish works in, (n, 40); before it, the tasks of joints' own limits."""
     verdict: Array
     """What a finish says, and the least distance to the goal it found [length], (2,)."""
 

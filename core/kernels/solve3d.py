@@ -375,7 +375,7 @@ def write_numbers(
     distance = distance_to(goal, pose)
     numbers[ITERATIONS] = led.iterations
     numbers[DISTANCE] = distance
-    if limits_failed(pose):
+    if limits_failed(pose.angles, pose.limits):
         numbers[STATUS] = FAILED + 5
     elif failed != 0:
         numbers[STATUS] = failed

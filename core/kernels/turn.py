@@ -7,9 +7,8 @@ vector v of the joint stands at `M(angles) v` there and is to move to a wanted d
 from math import atan2, cos, inf, pi, sin, sqrt
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.ease import eased
 from limbik.core.kernels.layout import Options, Plugs, Pose
-from limbik.core.kernels.limit import inside, turn_inside
+from limbik.core.kernels.limit import slowed, turn_inside
 from limbik.core.kernels.re_aim import re_aim
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
@@ -91,7 +90,10 @@ def turn_joint(
     if pose.free[joint] and not watched:
         wanted = multiply(axis_trig_to_matrix(axis, s, c), relative)
         if pose.limits[joint] != 0:
-            return turn_inside(joint, operating, target, wanted, zone, pose)
+            own = (pose.limits, pose.limit_params, pose.finish_rows[0])
+            return turn_inside(
+                joint, operating, target, wanted, zone, pose.angles, pose.relative, *own
+            )
         store_matrix(wanted, pose.relative, joint)
         return True
     if pose.hinged[joint] and not options.plain_clamp and not options.max_violations:
@@ -126,9 +128,8 @@ def _move(
     """
     if zone > 0.0 or pose.limits[joint] != 0:
         low, high = vector(pose.low, joint), vector(pose.high, joint)
-        angles = eased(before, angles, low, high, zone)
-        if pose.limits[joint] != 0:
-            angles = inside(joint, angles, pose)
+        own = (pose.limits, pose.limit_params, pose.finish_rows[0])
+        angles = slowed(joint, before, angles, low, high, zone, *own)
         turn = hpb_to_matrix(angles)
     change = subtract(angles, before)
     store_vector(angles, pose.angles, joint)

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.limit import pulled_inside
+from limbik.core.kernels.limit import ANGLES as TASK_ANGLES
+from limbik.core.kernels.limit import OTHER, PULL, STEP, do_task
+from limbik.core.kernels.limit import WORK as TASK_WORK
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -31,8 +33,8 @@ from limbik.core.rotation import Array
 # First columns of the scratch rows, three numbers each.
 ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
 POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
-TURN, MARGIN = 30, 33
-WIDTH = 34
+WORK = 30  # of a joint with a limit of its own
+WIDTH = WORK + TASK_WORK
 
 
 class Linkage(NamedTuple):
@@ -53,7 +55,7 @@ class Linkage(NamedTuple):
     high: Array
     """(n, 3) [rad]"""
     limits: NDArray[np.int64]
-    """Joints' own limits, (n,); 0 = none."""
+    """Joints' own limits for `do_task`, (n + 1,); 0 = none."""
     limit_params: Array
     """(n, 16)"""
 
@@ -126,23 +128,35 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
 def pull_inside(angles: int, joint: int, chain: Linkage, scratch: Array) -> None:
     """Pull the angles of a column into a joint's own limit, if it has one."""
     if chain.limits[joint] != 0:
-        pulled_row(angles, joint, chain.limits[joint], chain.limit_params[joint], scratch)
+        own_task(PULL, joint, angles, WAY, chain.limits, chain.limit_params, scratch)
+        write(read(scratch, joint, WORK + TASK_ANGLES), scratch, joint, angles)
 
 
 @kernel
-def pulled_row(angles: int, joint: int, limit: int, params: Array, scratch: Array) -> None:
-    """Pull the angles of a column into a limit.
+def own_task(
+    task: int,
+    joint: int,
+    angles: int,
+    step: int,
+    limits: NDArray[np.int64],
+    limit_params: Array,
+    scratch: Array,
+) -> None:
+    """Let a task be done on a joint with a limit of its own, see `do_task`.
 
     Args:
+        task: Which.
+        joint: Index.
         angles: First column of the angles [rad].
-        joint: Whose row it is.
-        limit: The joint's own limit.
-        params: Of the limit, (16,).
-        scratch: (n, WIDTH).
+        step: First column of the step.
+        limits: Of the chain.
+        limit_params: Of the chain.
+        scratch: (n, WIDTH); the results are in WORK.
     """
-    turn, margin = scratch[joint, TURN : TURN + 3], scratch[joint, MARGIN : MARGIN + 1]
-    found = pulled_inside(limit, read(scratch, joint, angles), params, turn, margin)
-    write(found, scratch, joint, angles)
+    write(read(scratch, joint, angles), scratch, joint, WORK + TASK_ANGLES)
+    write(read(scratch, joint, step), scratch, joint, WORK + STEP)
+    write(read(scratch, joint, HOME), scratch, joint, WORK + OTHER)
+    do_task(task, joint, limits, limit_params, scratch[joint, WORK : WORK + TASK_WORK])
 
 
 @kernel

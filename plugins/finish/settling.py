@@ -3,6 +3,8 @@
 from math import inf
 
 from limbik.core.jit import kernel
+from limbik.core.kernels.limit import STEP
+from limbik.core.kernels.limit import WAY as TASK_WAY
 from limbik.core.kernels.rotation import Vector, subtract, wrap_angle
 from limbik.core.rotation import Array
 from limbik.plugins.finish.linkage import (
@@ -10,13 +12,15 @@ from limbik.plugins.finish.linkage import (
     HOME,
     TRIAL,
     WAY,
+    WORK,
     Linkage,
     copy_columns,
     end_at,
     find_motions,
+    own_task,
+    read,
     write,
 )
-from limbik.plugins.finish.own import turn_between
 from limbik.plugins.finish.steps import find_step, take_step
 
 LONGEST_STEP = 0.35  # [rad]; the end strays with its square
@@ -54,7 +58,8 @@ def _find_way(chain: Linkage, scratch: Array) -> None:
     """Write the way from the angles to HOME, the short one round where an axis is free."""
     for joint in range(chain.offsets.shape[0]):
         if chain.limits[joint] != 0:
-            write(turn_between(ANGLES, HOME, joint, scratch), scratch, joint, WAY)
+            own_task(TASK_WAY, joint, ANGLES, WAY, chain.limits, chain.limit_params, scratch)
+            write(read(scratch, joint, WORK + STEP), scratch, joint, WAY)
             continue
         for axis in range(3):
             way = scratch[joint, HOME + axis] - scratch[joint, ANGLES + axis]

@@ -5,19 +5,32 @@ another pose). Axes at a limit are left out while the step would push them furth
 """
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.rotation import Vector, add, clamp, dot, scale, subtract
+from limbik.core.kernels.limit import ANGLES as TASK_ANGLES
+from limbik.core.kernels.limit import BAR, STEP, TURN_ON
+from limbik.core.kernels.rotation import (
+    Vector,
+    add,
+    clamp,
+    dot,
+    has_direction,
+    scale,
+    subtract,
+)
 from limbik.core.rotation import Array
 from limbik.plugins.finish.linkage import (
     ACTIVE,
     ANGLES,
+    AXES,
     TRIAL,
     WAY,
+    WORK,
     Linkage,
     motion,
-    pull_inside,
+    own_task,
+    read,
     turns,
+    write,
 )
-from limbik.plugins.finish.own import bar_way_out, turn_on
 
 
 @kernel
@@ -59,8 +72,14 @@ def take_step(longest: float, chain: Linkage, scratch: Array) -> float:
     share = longest / most if most > longest else 1.0
     for joint in range(chain.offsets.shape[0]):
         if chain.limits[joint] != 0:
-            turn_on(share, joint, scratch)
-            pull_inside(TRIAL, joint, chain, scratch)
+            step = scale(read(scratch, joint, TRIAL), share)
+            write(step, scratch, joint, TRIAL)
+            if scratch[joint, ACTIVE] != 0.0:
+                limits, params = chain.limits, chain.limit_params
+                own_task(TURN_ON, joint, ANGLES, TRIAL, limits, params, scratch)
+                write(read(scratch, joint, WORK + TASK_ANGLES), scratch, joint, TRIAL)
+            else:
+                write(read(scratch, joint, ANGLES), scratch, joint, TRIAL)
             continue
         for axis in range(3):
             angle = scratch[joint, ANGLES + axis]
@@ -116,9 +135,25 @@ def _bar_ways_out(chain: Linkage, scratch: Array) -> bool:
     found = False
     for joint in range(chain.offsets.shape[0]):
         if chain.limits[joint] != 0 and scratch[joint, ACTIVE] != 0.0:
-            limit, params = chain.limits[joint], chain.limit_params[joint]
-            found = bar_way_out(joint, limit, params, scratch) or found
+            own_task(BAR, joint, ANGLES, TRIAL, chain.limits, chain.limit_params, scratch)
+            way = read(scratch, joint, WORK + STEP)
+            if has_direction(way):
+                _flatten(way, joint, scratch)
+                found = True
     return found
+
+
+@kernel
+def _flatten(way: Vector, joint: int, scratch: Array) -> None:
+    """Take the part along a direction out of a joint's motions and its WAY: it slides on."""
+    along = (0.0, 0.0, 0.0)
+    for axis in range(3):
+        along = add(along, scale(motion(joint, axis, scratch), way[axis]))
+    for axis in range(3):
+        left = subtract(motion(joint, axis, scratch), scale(along, way[axis]))
+        write(left, scratch, joint, AXES + 3 * axis)
+    wanted = read(scratch, joint, WAY)
+    write(subtract(wanted, scale(way, dot(wanted, way))), scratch, joint, WAY)
 
 
 @kernel
