@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from limbik.core.compiler import invoker
 from limbik.core.jit import entry
+from limbik.core.kernels.own import LIMIT as LIMIT_COLUMN
 from limbik.core.slots import (
     BANK_SUPPRESSION,
     BEND_VECTOR,
@@ -108,8 +109,7 @@ def call_finish(
     base_rotation: Array,
     low: Array,
     high: Array,
-    limits: NDArray[np.int64],
-    limit_params: Array,
+    own: Array,
     reachable: int,
     params_array: Array,
     angles: Array,
@@ -117,7 +117,7 @@ def call_finish(
     verdict: Array,
 ) -> None:
     """Let a finish move `angles` (n, 3) [rad] to the goal."""
-    chain = (offsets, frozen, base_position, base_rotation, low, high, limits, limit_params)
+    chain = (offsets, frozen, base_position, base_rotation, low, high, own)
     work = (params_array, angles, scratch, verdict)
     if not _finish(address, (goal, tolerance, length, *chain, reachable, *work)):
         angles[:] = nan
@@ -132,7 +132,7 @@ def call_limit(address: int, angles: Array, params_array: Array, margin: Array) 
 
 
 @entry
-def call_limit_task(address: int, task: int, limit: int, limit_params: Array, work: Array) -> None:
-    """Let a task be carried out on a joint with a limit of its own; `work` is IN/OUT."""
-    if not _limit_task(address, (task, limit, limit_params, limit_params, work)):
-        work[:] = nan
+def call_limit_task(address: int, task: int, row: Array) -> None:
+    """Let a task be carried out on a joint with a limit of its own; `row` is IN/OUT."""
+    if not _limit_task(address, (task, row, row)):
+        row[:LIMIT_COLUMN] = nan

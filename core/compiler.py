@@ -238,9 +238,8 @@ def _type(kind: str) -> Any:
     vector = _types.Array(_types.float64, 1, "C")
     matrix = _types.Array(_types.float64, 2, "C")
     matrices = _types.Array(_types.float64, 3, "C")
-    counts = _types.Array(_types.int64, 1, "C")
     simple = {"count": _types.int64, "number": _types.float64, "matrix": matrix}
-    return (simple | {"counts": counts, "matrices": matrices}).get(kind, vector)
+    return (simple | {"matrices": matrices}).get(kind, vector)
 
 
 def _signature(slot: Slot) -> tuple[Any, ...]:

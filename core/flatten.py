@@ -6,14 +6,19 @@ from typing import Final
 
 import numpy as np
 
+from limbik.core.binding import Bound
 from limbik.core.chain import SHORTEST, Chain
 from limbik.core.errors import ChainError
+from limbik.core.jointlimits import Limits, own_rows
 from limbik.core.kernels.layout import Body as Body
+from limbik.core.kernels.layout import Choice as Choice
 from limbik.core.kernels.layout import Options as Options
 from limbik.core.kernels.layout import Plugs as Plugs
+from limbik.core.kernels.own import COMPLIANCE
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
+from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 
 SLOT_ORDER: Final = (
     "initial_bend",
@@ -101,7 +106,6 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         name = chain.names[settings.bend_reference - 1]
         raise ChainError("the chain has no length from the bend root to the end", name)
     cone, held = settings.forbidden_cone, settings.held
-    choose = settings.choose
     axis_x, axis_y = AXES[settings.reference_axis]
     return Options(
         full_fk=not settings.ik,
@@ -134,14 +138,39 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         plain_clamp=settings.clamp == "plain",
         from_current=settings.start == "current",
         soft_zone=settings.soft_zone,
-        compliance=1.0 - by_joint(chain, settings.stiffness, 0.0),
         limit_ease=radians(settings.limit_ease),
-        choose=0 if choose is None else CHOICES.index(choose.by) + 1,
-        candidates=0 if choose is None else choose.candidates,
-        choose_pose_given=choose is not None and choose.pose is not None,
-        choose_pose=reference_pose(chain, None if choose is None else choose.pose),
-        choose_weights=by_joint(chain, {} if choose is None else choose.weights, 1.0),
-        end_orientation=settings.end_orientation,
         fk_strength=settings.fk_strength,
         fk_mix=settings.fk_mix,
     )
+
+
+def flat_choice(chain: Chain, settings: Settings) -> Choice:
+    """Return what few solves ask for."""
+    choose = settings.choose
+    return Choice(
+        by=0 if choose is None else CHOICES.index(choose.by) + 1,
+        candidates=0 if choose is None else choose.candidates,
+        pose_given=choose is not None and choose.pose is not None,
+        pose=reference_pose(chain, None if choose is None else choose.pose),
+        weights=by_joint(chain, {} if choose is None else choose.weights, 1.0),
+        end_orientation=settings.end_orientation,
+    )
+
+
+def flat_plugs(
+    chain: Chain, settings: Settings, chosen: Mapping[str, Bound], limits: Limits
+) -> Plugs:
+    """Return addresses and parameters of the strategies; compiles them on first use."""
+    unused = np.zeros(MAX_PARAMS)
+    own = own_rows(chain, limits)
+    own[:, COMPLIANCE] = 1.0 - by_joint(chain, settings.stiffness, 0.0)
+    return Plugs(
+        **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
+        params=np.array([chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]),
+        own=own,
+    )
+
+
+def _address(bound: Bound) -> int:
+    """Return the address of a strategy, 0 for one that is passed over."""
+    return 0 if bound.name == PASSED_OVER else bound.address

@@ -173,7 +173,7 @@ def limbik_finishes() -> Iterable[Strategy]:
 
 
         def leave(goal, tolerance, length, offsets, frozen, base_position, base_rotation, low,
-                  high, limits, limit_params, reachable, params, angles, scratch, verdict):
+                  high, own, reachable, params, angles, scratch, verdict):
             verdict[0] = 0.0
 
 

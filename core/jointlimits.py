@@ -7,12 +7,13 @@ import numpy as np
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, InputError
-from limbik.core.kernels.layout import Counts
+from limbik.core.kernels.own import LIMIT as LIMIT_COLUMN
+from limbik.core.kernels.own import PARAMS, TASKS, WIDTH
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings, narrowing
 from limbik.core.slots import LIMIT, LIMIT_TASK, MAX_PARAMS
-from limbik.core.strategy import NoParams, Strategy, flatten, unflatten
+from limbik.core.strategy import Strategy, flatten, unflatten
 
 Limits = tuple[Bound | None, ...]
 
@@ -50,22 +51,24 @@ def refuse_limits(chain: Chain, solver: str) -> None:
             raise ChainError(message, joint.name)
 
 
-def flat_limits(chain: Chain, limits: Limits) -> tuple[Counts, Array]:
-    """Return what `Plugs` has as limits, (n + 1,), and parameters, (n, 16); compiles."""
-    addresses = np.zeros(len(chain) + 1, np.int64)
-    params = np.zeros((len(chain), MAX_PARAMS))
-    for number, bound in enumerate(limits):
+def own_rows(chain: Chain, limits: Limits) -> Array:
+    """Return what is each joint's own, see `limbik.core.kernels.own`; compiles limits."""
+    rows = np.zeros((len(chain), WIDTH))
+    for row, joint, bound in zip(rows, chain.joints, limits, strict=True):
         if bound is not None:
-            mirrored = chain.joints[number].mirrored
-            addresses[number] = -bound.address if mirrored else bound.address
-            params[number] = bound.values
-    if any(limits):
-        from limbik.core import compiler
-        from limbik.core.kernels.limit_tasks import limit_task
+            row[LIMIT_COLUMN] = -bound.address if joint.mirrored else bound.address
+            row[PARAMS : PARAMS + MAX_PARAMS] = bound.values
+            row[TASKS] = _tasks()
+    return rows
 
-        tasks = Strategy(LIMIT_TASK.name, limit_task, NoParams, "Tasks of limits.")
-        addresses[-1] = compiler.native(LIMIT_TASK.name, tasks)
-    return addresses, params
+
+def _tasks() -> int:
+    """Return the address of what works on joints with limits; compiles it on first use."""
+    from limbik.core import compiler
+    from limbik.core.kernels.limit_tasks import Nothing, limit_task
+
+    tasks = Strategy(LIMIT_TASK.name, limit_task, Nothing, "Tasks of limits.")
+    return compiler.native(LIMIT_TASK.name, tasks)
 
 
 def margin_of(bound: Bound, mirrored: bool, angles: Sequence[float]) -> float:

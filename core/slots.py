@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from limbik.core.kernels.own import WIDTH as OWN_WIDTH
 from limbik.core.strategy import MAX_PARAMS as MAX_PARAMS
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 PASSED_OVER = "none"
 """A slot whose strategy has this name is passed over: a solve does not even call it."""
 
-Kind = Literal["count", "counts", "number", "vector", "matrix", "matrices", "params"]
+Kind = Literal["count", "number", "vector", "matrix", "matrices", "params"]
 Sample = tuple[Any, ...]
 
 
@@ -38,7 +39,7 @@ class Argument:
 
     Attributes:
         name: Name every kernel must give it.
-        kind: `count` (int), `counts` (1-D array of int), `number` (float), `vector` (1-D array),
+        kind: `count` (int), `number` (float), `vector` (1-D array),
             `matrix` (2-D array), `matrices` (3-D array), `params`.
         meaning: What it holds, with its shape and unit.
         written: Whether the kernel writes into it.
@@ -138,11 +139,11 @@ def _finish_samples() -> list[Sample]:
     folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
 
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
-        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 40))
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 64))
         chain = (offsets, frozen, place, base, low, high)
-        limits = np.zeros(4, np.int64), np.zeros((3, MAX_PARAMS))
+        own = np.zeros((3, OWN_WIDTH))
         work = angles, rows, np.zeros(2)
-        return (np.array(goal), 1e-3, 1.8, *chain, *limits, 1, None, *work)
+        return (np.array(goal), 1e-3, 1.8, *chain, own, 1, None, *work)
 
     return [
         sample([0.3, 0.5, 1.5], low, bound, angles),
@@ -230,12 +231,11 @@ FINISH = Slot(
             "low", "matrix", "(n, 3) limits, -inf where free, those of held joints equal [rad]"
         ),
         Argument("high", "matrix", "(n, 3) limits, inf where free [rad]"),
-        Argument("limits", "counts", "(n + 1,) joints' own limits for `do_task`, 0 = none"),
-        Argument("limit_params", "matrix", "(n, 16) parameters of those limits"),
+        Argument("own", "matrix", "(n, 63) rows for `do_task` of joints with limits of their own"),
         Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
-        Argument("scratch", "matrix", "(n, 40) IN/OUT to work in, of any content", True),
+        Argument("scratch", "matrix", "(n, 64) IN/OUT to work in, of any content", True),
         Argument(
             "verdict",
             "vector",
@@ -277,10 +277,8 @@ LIMIT_TASK = Slot(
     "",
     (
         Argument("task", "count", "what is to be done"),
-        Argument("limit", "count", "address of the limit, negative for its mirror image"),
-        Argument("limit_params", "vector", "(16,) parameters of the limit"),
         _PARAMS,
-        Argument("work", "vector", "IN/OUT see `limbik.core.kernels.limit.do_task`", True),
+        Argument("row", "vector", "IN/OUT see `limbik.core.kernels.limit.do_task`", True),
     ),
     list,
 )

@@ -14,15 +14,14 @@ from numpy.typing import ArrayLike
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import PluginError
-from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_options
+from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
-from limbik.core.jointlimits import bound_limits, flat_limits
+from limbik.core.jointlimits import bound_limits
 from limbik.core.pose import forward_kinematics
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
-from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
 from limbik.core.solveinput import (
     Arrays,
@@ -118,21 +117,13 @@ class Solver:
 
     def _flatten(self) -> tuple[Any, ...]:
         """Return what the kernel gets before the strategies."""
-        return flat_body(self.chain, self.settings), flat_options(self.chain, self.settings)
+        flat = flat_body(self.chain, self.settings), flat_options(self.chain, self.settings)
+        return (*flat, flat_choice(self.chain, self.settings)) if self._fully else flat
 
     @cached_property
     def _plugs(self) -> Plugs:
         """Addresses and parameters of the strategies; compiles them on first use."""
-        chosen, unused = self.strategies, np.zeros(MAX_PARAMS)
-        limits, limit_params = flat_limits(self.chain, self.limits)
-        return Plugs(
-            **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
-            params=np.array(
-                [chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]
-            ),
-            limits=limits,
-            limit_params=limit_params,
-        )
+        return flat_plugs(self.chain, self.settings, self.strategies, self.limits)
 
     @cached_property
     def _kernel(self) -> Callable[..., int]:
@@ -148,9 +139,14 @@ class Solver:
             *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
 
+    @property
+    def _fully(self) -> bool:
+        """Whether the settings ask for what is compiled apart."""
+        return self.settings.choose is not None or self.settings.end_orientation > 0.0
+
     def _entry(self) -> Callable[..., int]:
         """The solve of many rows, not compiled yet."""
-        if self.settings.choose is None and not self.settings.end_orientation:
+        if not self._fully:
             from limbik.core.kernels.solve3d import solve_goals
 
             return solve_goals
@@ -185,9 +181,8 @@ class Solver:
             PluginError: A strategy gave a result that is not a number.
         """
         rows = checked(goal, (3,), "goal").reshape(1, 3)
-        if goal_turn is not None:
-            goal_turn = checked_turns(goal_turn, (3,)).reshape(1, 3)
-        return self._solve_row(self._rows(rows, goal_turn), fk_offsets, continuity, trace)
+        turns = None if goal_turn is None else checked_turns(goal_turn, (3,)).reshape(1, 3)
+        return self._solve_row(self._rows(rows, turns), fk_offsets, continuity, trace)
 
     def solve_many(
         self,
@@ -212,8 +207,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        rows = checked(goals, (None, 3), "goals")
-        return self._solve_rows(self._rows(rows, goal_turns), fk_offsets, threads)
+        rows = self._rows(checked(goals, (None, 3), "goals"), goal_turns)
+        return self._solve_rows(rows, fk_offsets, threads)
 
     def follow(
         self,
@@ -238,8 +233,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        rows = checked(goals, (None, 3), "goals")
-        return self._follow_rows(self._rows(rows, goal_turns), fk_offsets, continuity)
+        rows = self._rows(checked(goals, (None, 3), "goals"), goal_turns)
+        return self._follow_rows(rows, fk_offsets, continuity)
 
     def _solve_row(
         self,
@@ -250,8 +245,7 @@ class Solver:
     ) -> Solution:
         """Solve one row, (1, k): the goal, then what else the kernel takes for each."""
         memory = self._memory(continuity)
-        # The early stages, the rounds, the finish and the choice.
-        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + 2
+        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + len(_LATE_STAGES)
         out = Arrays(1, len(self.chain), stages if trace else 0, self._columns)
         count = self._run(rows, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
@@ -395,7 +389,7 @@ class Solver:
 
     def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
         rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
-        names = [*self._early_stages, *rounds, "finish", "choice"]
+        names = [*self._early_stages, *rounds, *_LATE_STAGES]
         positions, _ = forward_kinematics(self.chain, angles)
         return tuple(
             Stage(name, pose, places)
@@ -403,9 +397,5 @@ class Solver:
         )
 
 
+_LATE_STAGES = ("finish", "choice")
 _STATUS = {int(status): status for status in Status}
-
-
-def _address(bound: Bound) -> int:
-    """Return the address of a strategy, 0 for one that is passed over."""
-    return 0 if bound.name == PASSED_OVER else bound.address

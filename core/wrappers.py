@@ -62,8 +62,7 @@ def finish(
     base_rotation: Array,
     low: Array,
     high: Array,
-    limits: NDArray[np.int64],
-    limit_params: Array,
+    own: Array,
     reachable: int,
     params: Array,
     angles: Array,
@@ -81,8 +80,7 @@ def finish(
         base_rotation,
         low,
         high,
-        limits,
-        limit_params,
+        own,
         reachable,
         rebuild(params),
         angles,
@@ -96,9 +94,9 @@ def limit(angles: Array, params: Array, margin: Array) -> None:
     kernel(angles, rebuild(params), margin)
 
 
-def limit_task(task: int, limit: int, limit_params: Array, params: Array, work: Array) -> None:
+def limit_task(task: int, params: Array, row: Array) -> None:
     """Enter the tasks of joints with limits of their own."""
-    kernel(task, limit, limit_params, rebuild(params), work)
+    kernel(task, rebuild(params), row)
 
 
 TEMPLATES: dict[str, Any] = {

@@ -13,8 +13,9 @@ from math import inf, pi
 from limbik.core.jit import kernel
 from limbik.core.kernels.finish import end_solve
 from limbik.core.kernels.frames import clamp_angles, place_from, set_angles
-from limbik.core.kernels.layout import Body, Options, Plugs, Pose
-from limbik.core.kernels.limit import margin
+from limbik.core.kernels.layout import Body, Choice, Options, Plugs, Pose
+from limbik.core.kernels.limit import margin, put, taken
+from limbik.core.kernels.own import KEPT, LIMIT
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -30,7 +31,6 @@ from limbik.core.kernels.rotation import (
     rotate_back,
     rotation_vector,
     scale,
-    store_vector,
     subtract,
     transposed,
     turn_about,
@@ -41,14 +41,14 @@ from limbik.core.kernels.rotation import (
 from limbik.core.kernels.trace import record
 from limbik.core.rotation import Array
 
-NEAREST, MARGIN = 1, 2  # `Options.choose`; 0 = off
+NEAREST, MARGIN = 1, 2  # `Choice.by`; 0 = off
 BETTER = 1e-9  # by how much a later candidate must be better to count
 SWIVELS = 8  # bend sides around the line from root to goal
 PULLS = 12  # most times the best is pulled on
 LEAST_PULL = 1e-3
 
-# Rows of `Pose.kept`.
-FOUND, BEST, WANTED = 0, 1, 2
+# Columns of `Pose.own` with what is set aside.
+FOUND, BEST, WANTED = KEPT, KEPT + 3, KEPT + 6
 
 
 @kernel
@@ -56,6 +56,7 @@ def end_and_choose(
     goal: Vector,
     body: Body,
     options: Options,
+    choice: Choice,
     plugs: Plugs,
     memory: Array,
     pose: Pose,
@@ -70,6 +71,7 @@ def end_and_choose(
         goal: World [length].
         body: The chain.
         options: Of the solve.
+        choice: Of the solve.
         plugs: Of the solve.
         memory: Continuity, (n + 4, 3).
         pose: After CCD; changed in place.
@@ -81,24 +83,24 @@ def end_and_choose(
     """
     best, share = inf, 0.5
     said, nearest = 0.0, inf
-    candidates = options.candidates + PULLS if options.choose != 0 else 0
+    candidates = choice.candidates + PULLS if choice.by != 0 else 0
     for number in range(-1, candidates):
-        pulls = number >= options.candidates
+        pulls = number >= choice.candidates
         if pulls:
-            _pull(share, options, pose)
+            _pull(share, choice, pose)
         elif number >= 0:
-            _start(number, goal, body, options, memory, pose)
+            _start(number, goal, body, options, choice, memory, pose)
         if not end_solve(goal, body, options, plugs, pose):
             return False, stages
         reached = _gap(goal, pose) < options.tolerance
         if number < 0:
             stages = record(stages, pose, trace)
             said, nearest = pose.verdict[0], pose.verdict[1]
-            if options.choose == 0 or not reached:
+            if choice.by == 0 or not reached:
                 return True, stages
             _keep(FOUND, pose)
-            _set_wanted(body, options, memory, pose)
-        score = _score(options, pose)
+            _set_wanted(body, choice, memory, pose)
+        score = _score(choice, pose)
         if reached and score < best - BETTER:
             best = score
             _keep(BEST, pose)
@@ -108,7 +110,7 @@ def end_and_choose(
                 break
     pose.verdict[0], pose.verdict[1] = said, nearest
     for joint in range(body.offsets.shape[0]):
-        set_angles(joint, vector(pose.kept[BEST], joint), pose)
+        set_angles(joint, taken(pose.own[joint], BEST), pose)
     place_from(0, body, pose)
     return True, record(stages, pose, trace)
 
@@ -120,27 +122,27 @@ def _gap(goal: Vector, pose: Pose) -> float:
 
 
 @kernel
-def _keep(row: int, pose: Pose) -> None:
+def _keep(first: int, pose: Pose) -> None:
     """Set the angles of a pose aside."""
     for joint in range(pose.angles.shape[0]):
-        store_vector(vector(pose.angles, joint), pose.kept[row], joint)
+        put(vector(pose.angles, joint), pose.own[joint], first)
 
 
 @kernel
-def _set_wanted(body: Body, options: Options, memory: Array, pose: Pose) -> None:
+def _set_wanted(body: Body, choice: Choice, memory: Array, pose: Pose) -> None:
     """Set the pose aside to which the choice leans: the reference, or the middles of the ranges."""
     for joint in range(body.offsets.shape[0]):
-        wanted = reference(joint, body, options, memory)
-        if options.choose == MARGIN:
+        wanted = reference(joint, body, choice, memory)
+        if choice.by == MARGIN:
             wanted = _middle(joint, pose)
-        store_vector(wanted, pose.kept[WANTED], joint)
+        put(wanted, pose.own[joint], WANTED)
 
 
 @kernel
-def reference(joint: int, body: Body, options: Options, memory: Array) -> Vector:
+def reference(joint: int, body: Body, choice: Choice, memory: Array) -> Vector:
     """Return a joint's angles in the reference pose: given, else the pose before, else at rest."""
-    if options.choose_pose_given:
-        return vector(options.choose_pose, joint)
+    if choice.pose_given:
+        return vector(choice.pose, joint)
     if memory[3, 0] > 0.0:
         return vector(memory, joint + 4)
     return vector(body.rest, joint)
@@ -149,8 +151,8 @@ def reference(joint: int, body: Body, options: Options, memory: Array) -> Vector
 @kernel
 def _middle(joint: int, pose: Pose) -> Vector:
     """Return a joint's angles in the middles of its ranges, those of free axes as found."""
-    found = vector(pose.kept[FOUND], joint)
-    if pose.limits[joint] != 0:
+    found = taken(pose.own[joint], FOUND)
+    if pose.own[joint, LIMIT] != 0.0:
         return 0.0, 0.0, 0.0
     low, high = vector(pose.low, joint), vector(pose.high, joint)
     return (
@@ -161,7 +163,7 @@ def _middle(joint: int, pose: Pose) -> Vector:
 
 
 @kernel
-def _score(options: Options, pose: Pose) -> float:
+def _score(choice: Choice, pose: Pose) -> float:
     """Return how bad a pose is.
 
     Nearest: the joints' turns away from the reference, squared, weighted and summed [rad²].
@@ -170,35 +172,41 @@ def _score(options: Options, pose: Pose) -> float:
     """
     total, least = 0.0, inf
     for joint in range(pose.angles.shape[0]):
-        weight = options.choose_weights[joint]
-        if options.choose == NEAREST:
-            wanted = hpb_to_matrix(vector(pose.kept[WANTED], joint))
+        weight = choice.weights[joint]
+        if choice.by == NEAREST:
+            wanted = hpb_to_matrix(taken(pose.own[joint], WANTED))
             apart = rotation_vector(multiply(transposed(wanted), matrix(pose.relative, joint)))
             total += weight * dot(apart, apart)
             continue
-        if weight > 0.0 and pose.limits[joint] != 0:
-            least = min(least, margin(joint, vector(pose.angles, joint), pose) / weight)
+        if weight > 0.0 and pose.own[joint, LIMIT] != 0.0:
+            least = min(least, margin(vector(pose.angles, joint), pose.own[joint]) / weight)
         for axis in range(3):
             low, high = pose.low[joint, axis], pose.high[joint, axis]
             if weight > 0.0 and high < inf and high > low:
                 angle = pose.angles[joint, axis]
                 least = min(least, min(angle - low, high - angle) / weight)
-    if options.choose == NEAREST:
+    if choice.by == NEAREST:
         return total
     return -least if least < inf else 0.0
 
 
 @kernel
 def _start(
-    number: int, goal: Vector, body: Body, options: Options, memory: Array, pose: Pose
+    number: int,
+    goal: Vector,
+    body: Body,
+    options: Options,
+    choice: Choice,
+    memory: Array,
+    pose: Pose,
 ) -> None:
     """Put the chain into the pose a candidate starts from."""
     n = body.offsets.shape[0]
     state = number * 7919 + 1
     for joint in range(n):
-        angles = vector(pose.kept[FOUND], joint)
+        angles = taken(pose.own[joint], FOUND)
         if number == 0:
-            angles = nearest_form(reference(joint, body, options, memory), angles)
+            angles = nearest_form(reference(joint, body, choice, memory), angles)
         elif number == 1:
             angles = _middle(joint, pose)
         elif number == SWIVELS + 1 or number == SWIVELS + 2 + joint:
@@ -252,17 +260,17 @@ def _swivel(angle: float, goal: Vector, body: Body, options: Options, pose: Pose
 
 
 @kernel
-def _pull(share: float, options: Options, pose: Pose) -> None:
+def _pull(share: float, choice: Choice, pose: Pose) -> None:
     """Put the best pose a share of the way nearer to the wanted one, heavy joints before light."""
     heaviest = 0.0
     for joint in range(pose.angles.shape[0]):
-        heaviest = max(heaviest, options.choose_weights[joint])
+        heaviest = max(heaviest, choice.weights[joint])
     for joint in range(pose.angles.shape[0]):
-        best, wanted = vector(pose.kept[BEST], joint), vector(pose.kept[WANTED], joint)
+        best, wanted = taken(pose.own[joint], BEST), taken(pose.own[joint], WANTED)
         if pose.free[joint]:
             wanted = nearest_form(wanted, best)
-        elif options.choose == NEAREST:
+        elif choice.by == NEAREST:
             wanted = near(wanted, best)
-        part = share * options.choose_weights[joint] / max(heaviest, 1e-300)
+        part = share * choice.weights[joint] / max(heaviest, 1e-300)
         angles = add(best, scale(subtract(wanted, best), part))
         set_angles(joint, clamp_angles(joint, angles, pose), pose)

@@ -5,13 +5,9 @@ NamedTuples of arrays and numbers cost nothing in compiled code and keep their n
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from limbik.core.rotation import Array
 
 Vector = tuple[float, float, float]
-Counts = NDArray[np.int64]
 
 
 class Body(NamedTuple):
@@ -76,20 +72,8 @@ class Options(NamedTuple):
     """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
     soft_zone: float
     """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
-    compliance: Array
-    """Share of its turn each joint makes in CCD: 1 less its stiffness, (n,)."""
     limit_ease: float
     """Width of the zone before a limit in which CCD slows a joint [rad]; 0 = off."""
-    choose: int
-    """How to choose among solutions: 0 = take the first, see `limbik.core.kernels.choose`."""
-    candidates: int
-    choose_pose_given: bool
-    choose_pose: Array
-    """Reference pose if given, (n, 3) [rad]."""
-    choose_weights: Array
-    """(n,) [-]"""
-    end_orientation: float
-    """Share of the goal's orientation that the end takes over; 0 = off."""
     fk_strength: float
     fk_mix: float
 
@@ -104,11 +88,23 @@ class Plugs(NamedTuple):
     finish: int
     params: Array
     """One row a slot in the order above, (5, 16)."""
-    limits: Counts
-    """Addresses of the joints' own limits, 0 = none, negative = the mirror image of one; last that
-    of what carries out tasks on such joints, (n + 1,)."""
-    limit_params: Array
-    """(n, 16)"""
+    own: Array
+    """What is each joint's own, columns as in `limbik.core.kernels.own`, (n, WIDTH)."""
+
+
+class Choice(NamedTuple):
+    """What few solves ask for, see `limbik.core.kernels.solve_fully`."""
+
+    by: int
+    """How to choose among solutions: 0 = take the first, see `limbik.core.kernels.choose`."""
+    candidates: int
+    pose_given: bool
+    pose: Array
+    """Reference pose if given, (n, 3) [rad]."""
+    weights: Array
+    """(n,) [-]"""
+    end_orientation: float
+    """Share of the goal's orientation that the end takes over; 0 = off."""
 
 
 class Pose(NamedTuple):
@@ -140,16 +136,12 @@ class Pose(NamedTuple):
     """Bone lengths from the root over root-to-end length, weights, angles [rad], (3, n)."""
     directions: Array
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
-    limits: Counts
-    """As in `Plugs`, (n + 1,)."""
-    limit_params: Array
-    """(n, 16)"""
+    own: Array
+    """As in `Plugs`, with room to work in, (n, WIDTH)."""
     scratch: Array
     """Arguments of strategies, (8, 3)."""
-    kept: Array
-    """Angles set aside by the choice of a solution, (3, n, 3) [rad]."""
     finish_rows: Array
-    """What a finish works in, (n, 40); before it, the tasks of joints' own limits."""
+    """What a finish works in, (n, 64)."""
     verdict: Array
     """What a finish says, and the least distance to the goal it found [length], (2,)."""
 

@@ -9,7 +9,18 @@ from math import isnan
 
 from limbik.core.jit import kernel, late
 from limbik.core.kernels.ease import eased
-from limbik.core.kernels.layout import Counts, Plugs, Pose
+from limbik.core.kernels.own import (
+    ANGLES,
+    LIMIT,
+    MARGIN,
+    OPERATING,
+    RELATIVE,
+    STEP,
+    TARGET,
+    TASKS,
+    WANTED,
+    ZONE,
+)
 from limbik.core.kernels.rotation import (
     Matrix,
     Vector,
@@ -22,11 +33,6 @@ from limbik.core.rotation import Array
 
 # Tasks: pull inside; turn on by a step; bar a step that leads out; find the way; aim.
 PULL, TURN_ON, BAR, WAY, AIM = 0, 1, 2, 3, 4
-
-# First numbers of what a task works in; finishes need no more than WORK of them.
-ANGLES, MARGIN, STEP, OTHER = 0, 3, 4, 7
-WORK = 10
-OPERATING, TARGET, ZONE, RELATIVE, WANTED = 10, 13, 16, 17, 26
 
 call_limit_task = late("limbik.core.callers", "call_limit_task")
 
@@ -44,7 +50,7 @@ def taken(work: Array, first: int) -> Vector:
 
 
 @kernel
-def do_task(task: int, joint: int, limits: Counts, limit_params: Array, work: Array) -> None:
+def do_task(task: int, row: Array) -> None:
     """Carry out a task on a joint with a limit of its own; for finishes too.
 
     * PULL: ANGLES are pulled inside; MARGIN is the angle that was left.
@@ -53,63 +59,49 @@ def do_task(task: int, joint: int, limits: Counts, limit_params: Array, work: Ar
     * WAY: STEP becomes the rotation vector from ANGLES to OTHER.
     * AIM: ANGLES are turned toward WANTED, see `turn_inside`.
 
-    Rotation vectors are in the axes of the joint's zero pose [rad].
+    Rotation vectors are in the axes of the joint's zero pose, angles HPB from there [rad].
 
     Args:
         task: One of the above.
-        joint: Index.
-        limits: As in `Plugs`, (n + 1,).
-        limit_params: (n, 16)
-        work: IN/OUT: at least (10,), for AIM (36,); the angles are HPB from the zero pose [rad].
+        row: IN/OUT: columns as in `limbik.core.kernels.own`; OTHER is worked in.
     """
-    call_limit_task(limits[limits.shape[0] - 1], task, limits[joint], limit_params[joint], work)
+    call_limit_task(int(row[TASKS]), task, row)
 
 
 @kernel
-def pulled_inside(
-    joint: int, angles: Vector, limits: Counts, limit_params: Array, work: Array
-) -> Vector:
+def pulled_inside(angles: Vector, row: Array) -> Vector:
     """Return angles pulled into a joint's own limit, those given where they are allowed."""
-    put(angles, work, ANGLES)
-    do_task(PULL, joint, limits, limit_params, work)
-    return taken(work, ANGLES)
+    put(angles, row, ANGLES)
+    do_task(PULL, row)
+    return taken(row, ANGLES)
 
 
 @kernel
 def slowed(
-    joint: int,
-    before: Vector,
-    after: Vector,
-    low: Vector,
-    high: Vector,
-    zone: float,
-    limits: Counts,
-    limit_params: Array,
-    work: Array,
+    before: Vector, after: Vector, low: Vector, high: Vector, zone: float, row: Array
 ) -> Vector:
     """Return the angles of a turn with the limit ease, pulled into a joint's own limit if any."""
     angles = eased(before, after, low, high, zone)
-    if limits[joint] != 0:
-        angles = pulled_inside(joint, angles, limits, limit_params, work)
+    if row[LIMIT] != 0.0:
+        angles = pulled_inside(angles, row)
     return angles
 
 
 @kernel
-def load_limits(plugs: Plugs, pose: Pose) -> None:
-    """Give a working pose the limits of the solve's joints."""
-    for number in range(plugs.limits.shape[0]):
-        pose.limits[number] = plugs.limits[number]
-    for joint in range(plugs.limit_params.shape[0]):
-        for number in range(plugs.limit_params.shape[1]):
-            pose.limit_params[joint, number] = plugs.limit_params[joint, number]
+def load_own(source: Array, own: Array) -> None:
+    """Give a working pose what is each joint's own."""
+    for joint in range(own.shape[0]):
+        for place in range(own.shape[1]):
+            own[joint, place] = source[joint, place]
 
 
 @kernel
-def limits_failed(angles: Array, limits: Counts) -> bool:
+def limits_failed(angles: Array, own: Array) -> bool:
     """Return whether a joint with a limit of its own has angles that are no numbers."""
     failed = False
     for joint in range(angles.shape[0]):
-        if limits[joint] != 0 and isnan(angles[joint, 0] + angles[joint, 1] + angles[joint, 2]):
+        total = angles[joint, 0] + angles[joint, 1] + angles[joint, 2]
+        if own[joint, LIMIT] != 0.0 and isnan(total):
             failed = True
     return failed
 
@@ -123,9 +115,7 @@ def turn_inside(
     zone: float,
     angles: Array,
     relative: Array,
-    limits: Counts,
-    limit_params: Array,
-    work: Array,
+    row: Array,
 ) -> bool:
     """Turn a joint as far toward a wanted rotation as its own limit lets it.
 
@@ -137,35 +127,29 @@ def turn_inside(
         zone: Of the limit ease [rad]; 0 = off.
         angles: Of the pose, changed in place.
         relative: Of the pose, changed in place.
-        limits: As in `Plugs`.
-        limit_params: As in `Plugs`.
-        work: To work in, (36,).
+        row: What is the joint's own.
 
     Returns:
         Whether the joint came nearer to the target.
     """
-    put(vector(angles, joint), work, ANGLES)
-    put(operating, work, OPERATING)
-    put(target, work, TARGET)
-    work[ZONE] = zone
-    for row in range(3):
-        put(
-            (relative[joint, row, 0], relative[joint, row, 1], relative[joint, row, 2]),
-            work,
-            RELATIVE + 3 * row,
-        )
-        put(wanted[row], work, WANTED + 3 * row)
-    do_task(AIM, joint, limits, limit_params, work)
-    if work[STEP] != 0.0:
-        found = taken(work, ANGLES)
+    put(vector(angles, joint), row, ANGLES)
+    put(operating, row, OPERATING)
+    put(target, row, TARGET)
+    row[ZONE] = zone
+    for axis in range(3):
+        for place in range(3):
+            row[RELATIVE + 3 * axis + place] = relative[joint, axis, place]
+        put(wanted[axis], row, WANTED + 3 * axis)
+    do_task(AIM, row)
+    if row[STEP] != 0.0:
+        found = taken(row, ANGLES)
         store_vector(found, angles, joint)
         store_matrix(hpb_to_matrix(found), relative, joint)
-    return bool(work[STEP] > 1.0)
+    return bool(row[STEP] > 1.0)
 
 
 @kernel
-def margin(joint: int, angles: Vector, pose: Pose) -> float:
+def margin(angles: Vector, row: Array) -> float:
     """Return the angle a joint has left to the end of its own limit [rad]."""
-    work = pose.finish_rows[0]
-    pulled_inside(joint, angles, pose.limits, pose.limit_params, work)
-    return float(work[MARGIN])
+    pulled_inside(angles, row)
+    return float(row[MARGIN])

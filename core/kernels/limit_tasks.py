@@ -1,25 +1,24 @@
 """The work on a joint with a limit of its own, behind one address: see `do_task`."""
 
 from math import inf, isnan
+from typing import NamedTuple
 
 from limbik.core.jit import kernel, late
 from limbik.core.kernels.ease import eased_gap
-from limbik.core.kernels.limit import (
-    AIM,
+from limbik.core.kernels.limit import AIM, BAR, TURN_ON, WAY, put, taken
+from limbik.core.kernels.own import (
     ANGLES,
-    BAR,
+    LIMIT,
     MARGIN,
     OPERATING,
     OTHER,
+    PARAMS,
     RELATIVE,
     STEP,
     TARGET,
-    TURN_ON,
+    TASK_WIDTH,
     WANTED,
-    WAY,
     ZONE,
-    put,
-    taken,
 )
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
@@ -40,7 +39,6 @@ from limbik.core.kernels.rotation import (
     unit,
 )
 from limbik.core.rotation import Array
-from limbik.core.strategy import NoParams
 
 TRIES = 4  # sizes of a turn that are tried before a joint is left alone
 PROBE = 1e-6  # [rad]; the part of a step that shows whether a limit bars it
@@ -49,35 +47,33 @@ PUSHED = 1e-3  # share of the probe; a joint pulled back by more is at its limit
 call_limit = late("limbik.core.callers", "call_limit")
 
 
-def limit_task(task: int, limit: int, limit_params: Array, params: NoParams, work: Array) -> None:
+class Nothing(NamedTuple):
+    """The parameters of all tasks: none."""
+
+
+def limit_task(task: int, params: Nothing, work: Array) -> None:
     """Carry out a task; see `do_task`."""
     if task == AIM:
-        _aim(limit, limit_params, work)
+        _aim(work)
     elif task == WAY:
         after, before = hpb_to_matrix(taken(work, OTHER)), hpb_to_matrix(taken(work, ANGLES))
         put(rotation_vector(multiply(after, transposed(before))), work, STEP)
     elif task == BAR:
-        put(_bar(limit, limit_params, work), work, STEP)
+        put(_bar(work), work, STEP)
     else:
         angles = taken(work, ANGLES)
         if task == TURN_ON:
             angles = _turned(taken(work, STEP), angles)
-        put(_pulled(limit, angles, limit_params, work), work, ANGLES)
+        put(_pulled(angles, work), work, ANGLES)
 
 
 @kernel
-def _pulled(limit: int, angles: Vector, params: Array, work: Array) -> Vector:
-    """Return angles pulled inside, and write the margin; ANGLES stay as they are.
-
-    Args:
-        limit: The strategy's address, negative for the mirror image.
-        angles: HPB [rad].
-        params: Of the limit, (16,).
-        work: OTHER is worked in.
-    """
-    sign = 1.0 if limit > 0 else -1.0
+def _pulled(angles: Vector, work: Array) -> Vector:
+    """Return angles pulled inside, and write the margin; ANGLES stay as they are."""
+    sign = 1.0 if work[LIMIT] > 0.0 else -1.0
     put((sign * angles[0], angles[1], sign * angles[2]), work, OTHER)
-    call_limit(abs(limit), work[OTHER : OTHER + 3], params, work[MARGIN : MARGIN + 1])
+    turn, params = work[OTHER : OTHER + 3], work[PARAMS:TASK_WIDTH]
+    call_limit(int(abs(work[LIMIT])), turn, params, work[MARGIN : MARGIN + 1])
     h, p, b = taken(work, OTHER)
     return sign * h, p, sign * b
 
@@ -89,14 +85,14 @@ def _turned(step: Vector, angles: Vector) -> Vector:
 
 
 @kernel
-def _bar(limit: int, params: Array, work: Array) -> Vector:
+def _bar(work: Array) -> Vector:
     """Return the unit gradient of a limit that a step leads out of, else zeros.
 
     A tiny part of the step shows whether it is pulled back. A limit may pull aslant to its
     surface; the gradient is how far a turn about each axis leads out, to which sliding is square.
     """
     angles = taken(work, ANGLES)
-    pull = _pull(unit(taken(work, STEP)), limit, angles, params, work)
+    pull = _pull(unit(taken(work, STEP)), angles, work)
     if not norm(pull) > PUSHED:
         return 0.0, 0.0, 0.0
     back = unit(pull)
@@ -108,22 +104,22 @@ def _bar(limit: int, params: Array, work: Array) -> Vector:
             sign if axis == 1 else 0.0,
             sign if axis == 2 else 0.0,
         )
-        out = dot(_pull(turn, limit, angles, params, work), back)
+        out = dot(_pull(turn, angles, work), back)
         if abs(out) > PUSHED and found[axis] == 0.0:
             found = add(found, scale(turn, out))
     return unit(found)
 
 
 @kernel
-def _pull(way: Vector, limit: int, angles: Vector, params: Array, work: Array) -> Vector:
+def _pull(way: Vector, angles: Vector, work: Array) -> Vector:
     """Return the turn by which a limit pulls back a tiny turn, over the size of that turn."""
     probed = _turned(scale(way, PROBE), angles)
-    back = hpb_to_matrix(_pulled(limit, probed, params, work))
+    back = hpb_to_matrix(_pulled(probed, work))
     return scale(rotation_vector(multiply(back, transposed(hpb_to_matrix(probed)))), 1.0 / PROBE)
 
 
 @kernel
-def _aim(limit: int, params: Array, work: Array) -> None:
+def _aim(work: Array) -> None:
     """Turn toward a wanted rotation as far as the limit lets it.
 
     A turn that, pulled inside, leads away from the target is halved a few times, then left out.
@@ -135,14 +131,14 @@ def _aim(limit: int, params: Array, work: Array) -> None:
     before = angle_between(rotate(relative, operating), target)
     way = rotation_vector(multiply(wanted, transposed(relative)))
     if zone > 0.0:
-        gap = _margin(limit, relative, bank, params, work)
-        step = gap - _margin(limit, wanted, bank, params, work)
+        gap = _margin(relative, bank, work)
+        step = gap - _margin(wanted, bank, work)
         if gap < inf and 0.0 < step < inf:
             way = scale(way, (gap - eased_gap(max(gap, 0.0), step, zone)) / step)
     work[STEP] = 0.0
     for _ in range(TRIES):
         turned = multiply(turn_by(way), relative)
-        angles = _pulled(limit, matrix_to_hpb(turned, bank), params, work)
+        angles = _pulled(matrix_to_hpb(turned, bank), work)
         after = angle_between(rotate(hpb_to_matrix(angles), operating), target)
         if after < before or isnan(after):  # what is no number is kept, to be found and told
             put(angles, work, ANGLES)
@@ -158,7 +154,7 @@ def _rows(work: Array, first: int) -> Matrix:
 
 
 @kernel
-def _margin(limit: int, turn: Matrix, bank: float, params: Array, work: Array) -> float:
+def _margin(turn: Matrix, bank: float, work: Array) -> float:
     """Return the angle that a turn leaves to the end of the limit [rad]."""
-    _pulled(limit, matrix_to_hpb(turn, bank), params, work)
+    _pulled(matrix_to_hpb(turn, bank), work)
     return float(work[MARGIN])

@@ -19,7 +19,7 @@ from limbik.core.kernels.frames import (
     set_angles,
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
-from limbik.core.kernels.limit import limits_failed, load_limits
+from limbik.core.kernels.limit import limits_failed, load_own
 from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.rotation import (
     Vector,
@@ -92,7 +92,7 @@ def solve_goals(
         How many stages the trace holds.
     """
     pose = new_pose(body.offsets.shape[0])
-    load_limits(plugs, pose)
+    load_own(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
@@ -375,7 +375,7 @@ def write_numbers(
     distance = distance_to(goal, pose)
     numbers[ITERATIONS] = led.iterations
     numbers[DISTANCE] = distance
-    if limits_failed(pose.angles, pose.limits):
+    if limits_failed(pose.angles, pose.own):
         numbers[STATUS] = FAILED + 5
     elif failed != 0:
         numbers[STATUS] = failed

@@ -8,8 +8,8 @@ from math import isnan
 from limbik.core.jit import entry
 from limbik.core.kernels.choose import end_and_choose
 from limbik.core.kernels.frames import new_pose
-from limbik.core.kernels.layout import Body, Options, Plugs
-from limbik.core.kernels.limit import load_limits
+from limbik.core.kernels.layout import Body, Choice, Options, Plugs
+from limbik.core.kernels.limit import load_own
 from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import norm, subtract, vector
 from limbik.core.kernels.solve3d import FAILED, copy_rows, lead, settle_pose, write_numbers
@@ -20,6 +20,7 @@ from limbik.core.rotation import Array
 def solve_fully(
     body: Body,
     options: Options,
+    choice: Choice,
     plugs: Plugs,
     goals: Array,
     fk: Array,
@@ -33,11 +34,11 @@ def solve_fully(
 ) -> int:
     """Solve many goals one after the other.
 
-    Arguments and result as in `solve_goals`; but goals may be (m, 6), then how they are turned,
-    HPB [rad], or NaN.
+    Arguments and result as in `solve_goals`, with `choice` beside them; but goals may be (m, 6),
+    then how they are turned, HPB [rad], or NaN.
     """
     pose = new_pose(body.offsets.shape[0])
-    load_limits(plugs, pose)
+    load_own(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
@@ -48,15 +49,15 @@ def solve_fully(
         failed, stages = led.failed, led.stages
         if led.onward and plugs.finish != 0:
             ended, stages = end_and_choose(
-                led.pursued, body, options, plugs, memory, pose, trace, stages
+                led.pursued, body, options, choice, plugs, memory, pose, trace, stages
             )
             if not ended:
                 failed = FAILED + 4
             pose.verdict[1] += norm(subtract(goal, led.pursued))
-        if led.onward and options.end_orientation > 0.0 and goals.shape[1] > 3:
+        if led.onward and choice.end_orientation > 0.0 and goals.shape[1] > 3:
             turn = (goals[row, 3], goals[row, 4], goals[row, 5])
             if not isnan(turn[0]):
-                orient_end(turn, options.end_orientation, body, pose)
+                orient_end(turn, choice.end_orientation, body, pose)
         settle_pose(body, options, fk, memory, pose)
         write_numbers(goal, led, failed, options, pose, numbers[row])
         copy_rows(pose.angles, angles[row])

@@ -9,6 +9,7 @@ from math import atan2, cos, inf, pi, sin, sqrt
 from limbik.core.jit import kernel
 from limbik.core.kernels.layout import Options, Plugs, Pose
 from limbik.core.kernels.limit import slowed, turn_inside
+from limbik.core.kernels.own import LIMIT
 from limbik.core.kernels.re_aim import re_aim
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
@@ -89,11 +90,9 @@ def turn_joint(
     watched = locked or plugs.bank_suppression != 0
     if pose.free[joint] and not watched:
         wanted = multiply(axis_trig_to_matrix(axis, s, c), relative)
-        if pose.limits[joint] != 0:
-            own = (pose.limits, pose.limit_params, pose.finish_rows[0])
-            return turn_inside(
-                joint, operating, target, wanted, zone, pose.angles, pose.relative, *own
-            )
+        if pose.own[joint, LIMIT] != 0.0:
+            turned = (pose.angles, pose.relative, pose.own[joint])
+            return turn_inside(joint, operating, target, wanted, zone, *turned)
         store_matrix(wanted, pose.relative, joint)
         return True
     if pose.hinged[joint] and not options.plain_clamp and not options.max_violations:
@@ -126,10 +125,9 @@ def _move(
 
     Where there is a limit ease, of width `zone` [rad], less of the way is gone.
     """
-    if zone > 0.0 or pose.limits[joint] != 0:
+    if zone > 0.0 or pose.own[joint, LIMIT] != 0.0:
         low, high = vector(pose.low, joint), vector(pose.high, joint)
-        own = (pose.limits, pose.limit_params, pose.finish_rows[0])
-        angles = slowed(joint, before, angles, low, high, zone, *own)
+        angles = slowed(before, angles, low, high, zone, pose.own[joint])
         turn = hpb_to_matrix(angles)
     change = subtract(angles, before)
     store_vector(angles, pose.angles, joint)

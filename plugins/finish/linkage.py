@@ -7,13 +7,10 @@ joint, in the columns named here.
 from math import cos, sin
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from limbik.core.jit import kernel
-from limbik.core.kernels.limit import ANGLES as TASK_ANGLES
-from limbik.core.kernels.limit import OTHER, PULL, STEP, do_task
-from limbik.core.kernels.limit import WORK as TASK_WORK
+from limbik.core.kernels.limit import PULL, do_task
+from limbik.core.kernels.own import ANGLES as ANGLES_OF_OWN
+from limbik.core.kernels.own import LIMIT, OTHER, STEP, TASK_WIDTH
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -33,8 +30,9 @@ from limbik.core.rotation import Array
 # First columns of the scratch rows, three numbers each.
 ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
 POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
-WORK = 30  # of a joint with a limit of its own
-WIDTH = WORK + TASK_WORK
+OWN = 30  # what a joint's own limit works in, see `limbik.core.kernels.own`
+OWN_ANGLES, OWN_STEP = OWN + ANGLES_OF_OWN, OWN + STEP
+WIDTH = OWN + TASK_WIDTH
 
 
 class Linkage(NamedTuple):
@@ -54,10 +52,6 @@ class Linkage(NamedTuple):
     """(n, 3) [rad]"""
     high: Array
     """(n, 3) [rad]"""
-    limits: NDArray[np.int64]
-    """Joints' own limits for `do_task`, (n + 1,); 0 = none."""
-    limit_params: Array
-    """(n, 16)"""
 
 
 @kernel
@@ -111,7 +105,7 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
         hpb = read(scratch, joint, angles)
         frame = multiply(parent, hpb_to_matrix(hpb))
         write(origin, scratch, joint, POSITION)
-        if chain.limits[joint] != 0:
+        if has_limit(joint, scratch):
             for axis in range(3):
                 write(column(parent, axis), scratch, joint, AXES + 3 * axis)
             continue
@@ -125,23 +119,29 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
 
 
 @kernel
-def pull_inside(angles: int, joint: int, chain: Linkage, scratch: Array) -> None:
-    """Pull the angles of a column into a joint's own limit, if it has one."""
-    if chain.limits[joint] != 0:
-        own_task(PULL, joint, angles, WAY, chain.limits, chain.limit_params, scratch)
-        write(read(scratch, joint, WORK + TASK_ANGLES), scratch, joint, angles)
+def load_own(own: Array, scratch: Array) -> None:
+    """Give the scratch what is each joint's own."""
+    for joint in range(own.shape[0]):
+        for place in range(TASK_WIDTH):
+            scratch[joint, OWN + place] = own[joint, place]
 
 
 @kernel
-def own_task(
-    task: int,
-    joint: int,
-    angles: int,
-    step: int,
-    limits: NDArray[np.int64],
-    limit_params: Array,
-    scratch: Array,
-) -> None:
+def has_limit(joint: int, scratch: Array) -> bool:
+    """Return whether a joint has a limit of its own."""
+    return bool(scratch[joint, OWN + LIMIT] != 0.0)
+
+
+@kernel
+def pull_inside(angles: int, joint: int, scratch: Array) -> None:
+    """Pull the angles of a column into a joint's own limit, if it has one."""
+    if has_limit(joint, scratch):
+        own_task(PULL, joint, angles, WAY, scratch)
+        write(read(scratch, joint, OWN_ANGLES), scratch, joint, angles)
+
+
+@kernel
+def own_task(task: int, joint: int, angles: int, step: int, scratch: Array) -> None:
     """Let a task be done on a joint with a limit of its own, see `do_task`.
 
     Args:
@@ -149,14 +149,12 @@ def own_task(
         joint: Index.
         angles: First column of the angles [rad].
         step: First column of the step.
-        limits: Of the chain.
-        limit_params: Of the chain.
-        scratch: (n, WIDTH); the results are in WORK.
+        scratch: (n, WIDTH); HOME is the other pose, the results are in OWN_ANGLES and OWN_STEP.
     """
-    write(read(scratch, joint, angles), scratch, joint, WORK + TASK_ANGLES)
-    write(read(scratch, joint, step), scratch, joint, WORK + STEP)
-    write(read(scratch, joint, HOME), scratch, joint, WORK + OTHER)
-    do_task(task, joint, limits, limit_params, scratch[joint, WORK : WORK + TASK_WORK])
+    write(read(scratch, joint, angles), scratch, joint, OWN_ANGLES)
+    write(read(scratch, joint, step), scratch, joint, OWN_STEP)
+    write(read(scratch, joint, HOME), scratch, joint, OWN + OTHER)
+    do_task(task, scratch[joint, OWN:WIDTH])
 
 
 @kernel

@@ -33,6 +33,7 @@ from limbik.plugins.finish.linkage import (
     beyond_reach,
     copy_columns,
     end_at,
+    load_own,
     write,
 )
 from limbik.plugins.finish.settling import settle
@@ -40,7 +41,6 @@ from limbik.plugins.finish.starts import off_home, other_fold
 from limbik.plugins.finish.sweep import sweep
 
 Array = NDArray[np.float64]
-Counts = NDArray[np.int64]
 
 FULL_EFFORT_JOINTS = 8  # chains up to this long get all retries
 LEAST_RETRIES = 4
@@ -82,8 +82,7 @@ def newton(
     base_rotation: Array,
     low: Array,
     high: Array,
-    limits: Counts,
-    limit_params: Array,
+    own: Array,
     reachable: int,
     params: Newton,
     angles: Array,
@@ -91,8 +90,8 @@ def newton(
     verdict: Array,
 ) -> None:
     """End a solve at its goal within the limits, or as near as there is a way to."""
-    base = (base_position, base_rotation)
-    chain = Linkage(length, offsets, frozen, *base, low, high, limits, limit_params)
+    chain = Linkage(length, offsets, frozen, base_position, base_rotation, low, high)
+    load_own(own, scratch)
     point = (goal[0], goal[1], goal[2])
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):

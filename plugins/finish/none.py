@@ -9,7 +9,6 @@ from limbik.core.hooks import hookimpl
 from limbik.core.strategy import NoParams, Strategy
 
 Array = NDArray[np.float64]
-Counts = NDArray[np.int64]
 
 
 def none(
@@ -22,8 +21,7 @@ def none(
     base_rotation: Array,
     low: Array,
     high: Array,
-    limits: Counts,
-    limit_params: Array,
+    own: Array,
     reachable: int,
     params: NoParams,
     angles: Array,

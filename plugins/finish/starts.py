@@ -19,7 +19,7 @@ def off_home(chain: Linkage, scratch: Array) -> None:
             angle = scratch[joint, HOME + axis]
             up, down = angle + PUSH, max(angle - PUSH, low)
             scratch[joint, ANGLES + axis] = up if up <= high else down
-        pull_inside(ANGLES, joint, chain, scratch)
+        pull_inside(ANGLES, joint, scratch)
 
 
 @kernel
@@ -46,4 +46,4 @@ def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
             elif number > 2:
                 angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
             scratch[joint, ANGLES + axis] = angle
-        pull_inside(ANGLES, joint, chain, scratch)
+        pull_inside(ANGLES, joint, scratch)

@@ -5,8 +5,7 @@ another pose). Axes at a limit are left out while the step would push them furth
 """
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.limit import ANGLES as TASK_ANGLES
-from limbik.core.kernels.limit import BAR, STEP, TURN_ON
+from limbik.core.kernels.limit import BAR, TURN_ON
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -21,10 +20,12 @@ from limbik.plugins.finish.linkage import (
     ACTIVE,
     ANGLES,
     AXES,
+    OWN_ANGLES,
+    OWN_STEP,
     TRIAL,
     WAY,
-    WORK,
     Linkage,
+    has_limit,
     motion,
     own_task,
     read,
@@ -71,13 +72,12 @@ def take_step(longest: float, chain: Linkage, scratch: Array) -> float:
             most = max(most, abs(scratch[joint, TRIAL + axis]))
     share = longest / most if most > longest else 1.0
     for joint in range(chain.offsets.shape[0]):
-        if chain.limits[joint] != 0:
+        if has_limit(joint, scratch):
             step = scale(read(scratch, joint, TRIAL), share)
             write(step, scratch, joint, TRIAL)
             if scratch[joint, ACTIVE] != 0.0:
-                limits, params = chain.limits, chain.limit_params
-                own_task(TURN_ON, joint, ANGLES, TRIAL, limits, params, scratch)
-                write(read(scratch, joint, WORK + TASK_ANGLES), scratch, joint, TRIAL)
+                own_task(TURN_ON, joint, ANGLES, TRIAL, scratch)
+                write(read(scratch, joint, OWN_ANGLES), scratch, joint, TRIAL)
             else:
                 write(read(scratch, joint, ANGLES), scratch, joint, TRIAL)
             continue
@@ -134,9 +134,9 @@ def _bar_ways_out(chain: Linkage, scratch: Array) -> bool:
     """Take the way out of their own limits from joints that the step would push there."""
     found = False
     for joint in range(chain.offsets.shape[0]):
-        if chain.limits[joint] != 0 and scratch[joint, ACTIVE] != 0.0:
-            own_task(BAR, joint, ANGLES, TRIAL, chain.limits, chain.limit_params, scratch)
-            way = read(scratch, joint, WORK + STEP)
+        if has_limit(joint, scratch) and scratch[joint, ACTIVE] != 0.0:
+            own_task(BAR, joint, ANGLES, TRIAL, scratch)
+            way = read(scratch, joint, OWN_STEP)
             if has_direction(way):
                 _flatten(way, joint, scratch)
                 found = True

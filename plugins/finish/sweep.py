@@ -12,6 +12,7 @@ from limbik.plugins.finish.linkage import (
     Linkage,
     axis_of,
     end_at,
+    has_limit,
     read,
     turns,
 )
@@ -32,9 +33,7 @@ def sweep(goal: Vector, chain: Linkage, scratch: Array) -> None:
     """
     end = end_at(ANGLES, chain, scratch)
     for joint in range(chain.offsets.shape[0] - 1, -1, -1):
-        if chain.limits[joint] != 0:
-            continue  # the descent turns it
-        if chain.limits[joint] != 0:
+        if has_limit(joint, scratch):
             continue  # the descent turns it
         origin = read(scratch, joint, POSITION)
         reach, target = subtract(end, origin), subtract(goal, origin)
