@@ -15,7 +15,7 @@ from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import Fault, InputError
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.skeleton import WORLD, Limb, Skeleton
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
@@ -221,7 +221,7 @@ class BodySolver:
         }
         if chain.turns is not None:
             turned = chain.turns[min(frame, len(chain.turns) - 1)]
-            if isinstance(solver, Solver2D):
+            if isinstance(solver, Solver):
                 asked["goal_turn"] = turned
             if isinstance(solver, WholeSolver):
                 asked["goal_rotation"] = hpb_to_matrix(turned)
@@ -230,6 +230,8 @@ class BodySolver:
             goal = origin + axes @ goal
             if "goal_rotation" in asked:
                 asked["goal_rotation"] = axes @ asked["goal_rotation"]
+            if "goal_turn" in asked and not isinstance(solver, Solver2D):
+                asked["goal_turn"] = matrix_to_hpb(axes @ hpb_to_matrix(asked["goal_turn"]))
             if isinstance(solver, Solver2D):
                 solver = solver.with_pole(origin + axes @ np.array(solver.pole.position))
         solution = solver.solve(goal, **asked)

@@ -120,7 +120,7 @@ def body_from(document: Document, folder: Path, registry: Registry | None = None
     chosen = _input(given.get("skeleton"), document, registry)
     parts = given["chains"] if isinstance(given.get("chains"), list) else []
     documents = [document.under(("chains", index)) for index in range(len(parts))]
-    faults = [fault for part in documents for fault in strategy_faults(part, registry)]
+    faults = [f for part in (document, *documents) for f in strategy_faults(part, registry)]
     model = None
     try:
         model = BodyModel.model_validate(_standing_in(document.content, chosen))

@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 
 from limbik.core.compiler import invoker
 from limbik.core.jit import entry
-from limbik.core.slots import BANK_SUPPRESSION, BEND_VECTOR, FINISH, INITIAL_BEND, ROOT_CONTROL
+from limbik.core.kernels.own import LIMIT as LIMIT_COLUMN
+from limbik.core.slots import (
+    BANK_SUPPRESSION,
+    BEND_VECTOR,
+    FINISH,
+    INITIAL_BEND,
+    LIMIT,
+    LIMIT_TASK,
+    ROOT_CONTROL,
+)
 
 Array = NDArray[np.float64]
 
@@ -21,6 +30,8 @@ _bend_vector = invoker(BEND_VECTOR)
 _root_control = invoker(ROOT_CONTROL)
 _bank_suppression = invoker(BANK_SUPPRESSION)
 _finish = invoker(FINISH)
+_limit = invoker(LIMIT)
+_limit_task = invoker(LIMIT_TASK)
 
 
 @entry
@@ -98,6 +109,7 @@ def call_finish(
     base_rotation: Array,
     low: Array,
     high: Array,
+    own: Array,
     reachable: int,
     params_array: Array,
     angles: Array,
@@ -105,7 +117,22 @@ def call_finish(
     verdict: Array,
 ) -> None:
     """Let a finish move `angles` (n, 3) [rad] to the goal."""
-    chain = (offsets, frozen, base_position, base_rotation, low, high)
+    chain = (offsets, frozen, base_position, base_rotation, low, high, own)
     work = (params_array, angles, scratch, verdict)
     if not _finish(address, (goal, tolerance, length, *chain, reachable, *work)):
         angles[:] = nan
+
+
+@entry
+def call_limit(address: int, angles: Array, params_array: Array, margin: Array) -> None:
+    """Let a joint's limit pull `angles` (3,) [rad] inside and write its `margin` (1,) [rad]."""
+    if not _limit(address, (angles, params_array, margin)):
+        angles[:] = nan
+        margin[:] = nan
+
+
+@entry
+def call_limit_task(address: int, task: int, row: Array) -> None:
+    """Let a task be carried out on a joint with a limit of its own; `row` is IN/OUT."""
+    if not _limit_task(address, (task, row, row)):
+        row[:LIMIT_COLUMN] = nan

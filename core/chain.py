@@ -1,11 +1,11 @@
 """`Joint` and `Chain`: what a user builds; checked once, then frozen arrays (000 §4, §7.4)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isfinite, pi, radians
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -39,6 +39,9 @@ class Joint:
         planar: Range of the planar joint's angle in the 2D solver (D-06), from the bone before it
             (the base's: from the line base to goal), positive toward the pole. None takes the
             pitch range instead (2D 42); (-π, π) is free.
+        limit: A limit of its own in place of the ranges (M-08): a strategy of the slot `limit`, its
+            name or a mapping with `use` and its parameters in degrees.
+        mirrored: Whether that limit is meant for the joint's mirror image in its YZ plane.
     """
 
     name: str
@@ -49,6 +52,8 @@ class Joint:
     pitch: Limit | None = None
     bank: Limit | None = None
     planar: Limit | None = None
+    limit: str | Mapping[str, Any] | None = field(default=None, kw_only=True)
+    mirrored: bool = field(default=False, kw_only=True)
 
     @classmethod
     def degrees(
@@ -61,10 +66,12 @@ class Joint:
         pitch: Limit | None = None,
         bank: Limit | None = None,
         planar: Limit | None = None,
+        *,
+        limit: str | Mapping[str, Any] | None = None,
     ) -> "Joint":
         """Build a joint from angles in degrees; the arguments are those of the class."""
 
-        def limit(span: Limit | None) -> Limit | None:
+        def ends(span: Limit | None) -> Limit | None:
             return None if span is None else (radians(span[0]), radians(span[1]))
 
         return cls(
@@ -72,10 +79,11 @@ class Joint:
             offset,
             (radians(frozen[0]), radians(frozen[1]), radians(frozen[2])),
             (radians(rest[0]), radians(rest[1]), radians(rest[2])),
-            limit(heading),
-            limit(pitch),
-            limit(bank),
-            limit(planar),
+            ends(heading),
+            ends(pitch),
+            ends(bank),
+            ends(planar),
+            limit=limit,
         )
 
     @property
@@ -237,6 +245,7 @@ class Chain:
                 rest=turn(joint.rest),
                 heading=flip(joint.heading),
                 bank=flip(joint.bank),
+                mirrored=joint.limit is not None and not joint.mirrored,
             )
             for joint in self.joints
         ]
@@ -264,9 +273,16 @@ def _check_joint(joint: Joint) -> None:
         raise ChainError("every joint needs a name")
     for what in ("offset", "frozen", "rest"):
         _check_vector(getattr(joint, what), what, joint.name)
+    _check_own_limit(joint)
     for axis, limit in zip((*AXES, "planar"), (*joint.limits, joint.planar), strict=True):
         if limit is not None:
             _check_limit(joint.name, axis, limit)
+
+
+def _check_own_limit(joint: Joint) -> None:
+    for axis, limit in zip(AXES, joint.limits, strict=True):
+        if joint.limit is not None and limit is not None:
+            raise ChainError(f"a joint has either a limit of its own or a {axis} range", joint.name)
 
 
 def _check_limit(name: str, axis: str, limit: Limit) -> None:

@@ -6,29 +6,37 @@ from typing import Any
 
 from limbik.core.errors import Fault, InputError
 from limbik.core.registry import Registry
-from limbik.core.slots import SLOTS, SOLVER
+from limbik.core.slots import LIMIT, OPTIONS, SOLVER
 from limbik.core.whole import BUILT_IN_3D, OWN_SOLVERS
 from limbik.core.yamlfile import Document, KeyPath
 
 
-def _choices(content: Any) -> Iterator[tuple[str, Any]]:
-    """Give the slots a scene chooses a strategy for, unchecked."""
-    options = content.get("options") if isinstance(content, dict) else None
-    if isinstance(content, dict) and content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
-        yield SOLVER.name, content[SOLVER.name]
+def _choices(content: Any) -> Iterator[tuple[KeyPath, str, Any]]:
+    """Give place, slot and choice of every strategy a scene chooses, unchecked."""
+    if not isinstance(content, dict):
+        return
+    if content.get(SOLVER.name, BUILT_IN_3D) not in OWN_SOLVERS:
+        yield (SOLVER.name,), SOLVER.name, content[SOLVER.name]
+    options = content.get("options")
     if isinstance(options, dict):
-        yield from ((slot, options[slot]) for slot in SLOTS if slot in options)
+        yield from ((("options", slot), slot, options[slot]) for slot in OPTIONS if slot in options)
+    for holder in ("chain", "skeleton"):
+        owner = content.get(holder)
+        joints = owner.get("joints") if isinstance(owner, dict) else None
+        for number, joint in enumerate(joints if isinstance(joints, list) else ()):
+            if isinstance(joint, dict) and LIMIT.name in joint:
+                yield (holder, "joints", number, LIMIT.name), LIMIT.name, joint[LIMIT.name]
 
 
 def checkable(content: Any) -> Any:
-    """Leave out choices without a strategy's name: `strategy_faults` has them already.
+    """Leave out options without a strategy's name: `strategy_faults` has them already.
 
     A scene with a trajectory needs no goals.
     """
     nameless = [
         slot
-        for slot, choice in _choices(content)
-        if slot != SOLVER.name
+        for place, slot, choice in _choices(content)
+        if place[0] == "options"
         and isinstance(choice, dict)
         and not isinstance(choice.get("use"), str)
     ]
@@ -42,10 +50,9 @@ def checkable(content: Any) -> Any:
 
 def strategy_faults(document: Document, registry: Registry | None) -> Iterator[Fault]:
     """Check each chosen strategy and its parameters against the registry."""
-    for slot, choice in _choices(document.content):
+    for place, slot, choice in _choices(document.content):
         if isinstance(choice, str | dict):
             registry = registry or Registry()
-            place: KeyPath = (slot,) if slot == SOLVER.name else ("options", slot)
             yield from choice_faults(slot, choice, place, document, registry)
 
 

@@ -18,8 +18,8 @@ import numba.extending
 
 from limbik.core import cache, sources
 from limbik.core.errors import PluginError
-from limbik.core.jit import COMPILES, Entry
-from limbik.core.slots import SLOTS, Slot
+from limbik.core.jit import COMPILES, Entry, Late
+from limbik.core.slots import CALLED, Slot
 from limbik.core.strategy import Parameter, Strategy, layout, unflatten
 from limbik.core.wrappers import TEMPLATES
 
@@ -100,7 +100,7 @@ def native(slot: str, strategy: Strategy) -> int:
     with _LOCK:
         key = (slot, strategy)
         if key not in _NATIVE:
-            _NATIVE[key] = (_compile if COMPILES else _interpret)(SLOTS[slot], strategy)
+            _NATIVE[key] = (_compile if COMPILES else _interpret)(CALLED[slot], strategy)
         return _NATIVE[key][0]
 
 
@@ -173,6 +173,8 @@ def _compiled(function: Any) -> Any:
     which took a third of the time to compile. One that takes a record of arrays becomes part of
     its caller: a call would copy every field of every array, which took a third of a solve.
     """
+    if isinstance(function, Late):
+        function = function.target()
     plain = cast(FunctionType, function.function if isinstance(function, Entry) else function)
     if id(plain) not in _COMPILED:
         copy, fill = sources.rebuilt(plain, "kernel", _compiled)

@@ -77,7 +77,8 @@ class Controller:
         chain = solver.chain
         goal = pull_into_reach(chain, self.position) if self.reach_limit else self.position
         continuity = None if before is None else before.solution.continuity
-        solution = solver.solve(goal, fk_offsets=fk_offsets, continuity=continuity)
+        turn = self.turn if solver.settings.end_orientation else None
+        solution = solver.solve(goal, fk_offsets=fk_offsets, continuity=continuity, goal_turn=turn)
         held = self.hold_on_end and not solver.settings.ik
         place = solution.positions[-1] if held else solution.goal
         turn = self._turn(solution, place)

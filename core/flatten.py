@@ -1,18 +1,24 @@
 """From chain and settings to the flat arrays the compiled solve runs on."""
 
+from collections.abc import Mapping
 from math import radians
 from typing import Final
 
 import numpy as np
 
+from limbik.core.binding import Bound
 from limbik.core.chain import SHORTEST, Chain
 from limbik.core.errors import ChainError
+from limbik.core.jointlimits import Limits, own_rows
 from limbik.core.kernels.layout import Body as Body
+from limbik.core.kernels.layout import Choice as Choice
 from limbik.core.kernels.layout import Options as Options
 from limbik.core.kernels.layout import Plugs as Plugs
+from limbik.core.kernels.own import COMPLIANCE
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
+from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 
 SLOT_ORDER: Final = (
     "initial_bend",
@@ -27,6 +33,23 @@ AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
     "y+": (0.0, 1.0),
     "y-": (0.0, -1.0),
 }
+
+
+CHOICES: Final = ("nearest", "margin")
+"""The words of `Choose.by` in the order of `limbik.core.kernels.choose`, from 1."""
+
+
+def by_joint(chain: Chain, values: Mapping[str, float], default: float) -> Array:
+    """Return what is given by joints' names as an array, (n,)."""
+    return np.array([values.get(name, default) for name in chain.names], np.float64)
+
+
+def reference_pose(chain: Chain, given: Mapping[str, tuple[float, float, float]] | None) -> Array:
+    """Return the rest pose with some joints' angles [deg] replaced, inside the limits [rad]."""
+    pose = chain.rest.copy()
+    for name, angles in (given or {}).items():
+        pose[chain.names.index(name)] = np.radians(angles)
+    return np.clip(pose, chain.low, chain.high)
 
 
 def flat_body(chain: Chain, settings: Settings) -> Body:
@@ -115,6 +138,39 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         plain_clamp=settings.clamp == "plain",
         from_current=settings.start == "current",
         soft_zone=settings.soft_zone,
+        limit_ease=radians(settings.limit_ease),
         fk_strength=settings.fk_strength,
         fk_mix=settings.fk_mix,
     )
+
+
+def flat_choice(chain: Chain, settings: Settings) -> Choice:
+    """Return what few solves ask for."""
+    choose = settings.choose
+    return Choice(
+        by=0 if choose is None else CHOICES.index(choose.by) + 1,
+        candidates=0 if choose is None else choose.candidates,
+        pose_given=choose is not None and choose.pose is not None,
+        pose=reference_pose(chain, None if choose is None else choose.pose),
+        weights=by_joint(chain, {} if choose is None else choose.weights, 1.0),
+        end_orientation=settings.end_orientation,
+    )
+
+
+def flat_plugs(
+    chain: Chain, settings: Settings, chosen: Mapping[str, Bound], limits: Limits
+) -> Plugs:
+    """Return addresses and parameters of the strategies; compiles them on first use."""
+    unused = np.zeros(MAX_PARAMS)
+    own = own_rows(chain, limits)
+    own[:, COMPLIANCE] = 1.0 - by_joint(chain, settings.stiffness, 0.0)
+    return Plugs(
+        **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
+        params=np.array([chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]),
+        own=own,
+    )
+
+
+def _address(bound: Bound) -> int:
+    """Return the address of a strategy, 0 for one that is passed over."""
+    return 0 if bound.name == PASSED_OVER else bound.address

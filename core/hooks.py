@@ -173,13 +173,51 @@ def limbik_finishes() -> Iterable[Strategy]:
 
 
         def leave(goal, tolerance, length, offsets, frozen, base_position, base_rotation, low,
-                  high, reachable, params, angles, scratch, verdict):
+                  high, own, reachable, params, angles, scratch, verdict):
             verdict[0] = 0.0
 
 
         @limbik.hookimpl
         def limbik_finishes():
             return [limbik.Strategy("leave", leave, description="Leave CCD's pose as it is.")]
+        ```
+    """
+    raise NotImplementedError  # a specification is never called
+
+
+@hookspec
+def limbik_limits() -> Iterable[Strategy]:
+    """Offer limits of joints that are no ranges of heading, pitch and bank.
+
+    A kernel takes `(angles, params, margin)`, see `limbik.core.slots.LIMIT`. Wherever a joint is
+    turned, it pulls the joint inside, so what is allowed must stay exactly as it is.
+
+    Returns:
+        The strategies, each with a name of its own.
+
+    Example:
+        ```python
+        from typing import Annotated, NamedTuple
+
+        from pydantic import Field
+
+        import limbik
+        from limbik.core.strategy import Degrees
+
+
+        class Hip(NamedTuple):
+            open: Annotated[float, Field(ge=0, le=90, description="[deg]"), Degrees] = 60.0
+
+
+        def hip(angles, params, margin):
+            largest = params.open * (1.0 - 0.5 * min(abs(angles[1]), 1.0))
+            margin[0] = largest - abs(angles[0])
+            angles[0] = min(max(angles[0], -largest), largest)
+
+
+        @limbik.hookimpl
+        def limbik_limits():
+            return [limbik.Strategy("hip", hip, Hip, "Opens the less, the more it is raised.")]
         ```
     """
     raise NotImplementedError  # a specification is never called

@@ -9,6 +9,7 @@ runs in the interpreter.
 import os
 from collections.abc import Callable
 from functools import update_wrapper
+from importlib import import_module
 from typing import Any, TypeVar, cast
 
 from limbik.core import cache
@@ -67,6 +68,26 @@ def entry(function: F) -> F:
     Unlike a kernel it may allocate.
     """
     return cast(F, Entry(function) if COMPILES else function)
+
+
+class Late:
+    """A function that is made only when it is called or compiled; see `late`."""
+
+    def __init__(self, module: str, name: str) -> None:
+        self.module, self.name = module, name
+
+    def target(self) -> Callable[..., Any]:
+        """Import the function."""
+        return cast(Callable[..., Any], getattr(import_module(self.module), self.name))
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function, in the interpreter."""
+        return self.target()(*arguments)
+
+
+def late(module: str, name: str) -> Any:
+    """Stand for a function whose module needs the compiler, so that importing a kernel does not."""
+    return Late(module, name)
 
 
 def is_compiled_before() -> bool:

@@ -122,7 +122,7 @@ def _without_limits(chain: Chain) -> Chain:
     """The same chain with all axes free, resting in the same pose."""
     rest = np.clip(chain.rest, chain.low, chain.high).tolist()
     joints = [
-        replace(joint, rest=tuple(pose), heading=None, pitch=None, bank=None)
+        replace(joint, rest=tuple(pose), heading=None, pitch=None, bank=None, limit=None)
         for joint, pose in zip(chain.joints, rest, strict=True)
     ]
     return Chain(joints, chain.base_position, chain.base_turn)

@@ -86,6 +86,9 @@ def mirrored_settings(settings: Settings, strategies: Mapping[str, Bound]) -> Se
     cone = settings.forbidden_cone
     if cone is not None and cone.axis in _ACROSS:
         changes["forbidden_cone"] = {**cone.model_dump(), "axis": _ACROSS[cone.axis]}
+    if settings.choose is not None and settings.choose.pose is not None:
+        pose = {name: (-h, p, -b) for name, (h, p, b) in settings.choose.pose.items()}
+        changes["choose"] = {**settings.choose.model_dump(), "pose": pose}
     return Settings(**{**given, **changes})
 
 

@@ -14,7 +14,7 @@ from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
-from limbik.core.whole import Batch, WholeSolution, prepare
+from limbik.core.whole import OWN_SOLVERS, Batch, WholeSolution, prepare
 from limbik.core.yamlfile import Document
 
 
@@ -132,8 +132,10 @@ def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Itera
     planned = isinstance(model, SceneModel) and model.trajectory is not None
     if turns_end or planned or model.solver == "2d" or not isinstance(model.goals, list):
         return
+    if model.solver in OWN_SOLVERS and model.options.end_orientation:
+        return
     for number, goal in enumerate(model.goals):
         if goal.turn is not None:
             message = "its orientation has no effect: the scene's solver goes to positions alone"
-            hint = "choose a solver of pose goals, see 'limbik plugins'"
+            hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
             yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)

@@ -45,15 +45,14 @@ from limbik.core.pole import Pole
 from limbik.core.posegoals import PoseBatch, turn_faults
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.scenegoals import axes_faults, goals_of, pole_of, turns_of, twice
+from limbik.core.scenegoals import goals_of, pole_of, turns_of, twice
 from limbik.core.scenemodel import JointModel, JudgeModel, SceneModel, SolveModel
-from limbik.core.sceneplane import solver_faults
+from limbik.core.sceneoptions import option_faults, unknown_joints
 from limbik.core.settings import Settings
 from limbik.core.slots import SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.whole import OWN_SOLVERS, prepare
-from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
 
@@ -208,8 +207,9 @@ def build_scene(
         SceneError: With every fault that could be found.
     """
     chain, names = (body.chain, body.chain.names) if body else (chain, tuple(joints))
-    found = [*faults, *_fk_faults(names, model, document)]
-    found += _settings_faults(len(names), model, document)
+    found = [*faults, *unknown_joints(model.fk, names, ("fk",), document)]
+    limited = [] if chain is None else [j.name for j in chain.joints if j.limit is not None]
+    found += option_faults(names, limited, model, document)
     solver = None
     try:
         if chain is not None and not found:
@@ -221,7 +221,8 @@ def build_scene(
     turns = turns_of(model)
     if body and body.goals is not None and "goals" not in document.content:
         goal_names, goals = body.goal_names, body.goals
-        turns = body.goal_turns if model.pole and model.pole.rotor else None
+        turned = model.options.end_orientation or (model.pole and model.pole.rotor)
+        turns = body.goal_turns if turned else None
     found += goal_faults
     if chain is None or found:
         raise SceneError(shortlist(found))
@@ -275,32 +276,6 @@ def _joint_faults(names: Sequence[str], document: Document) -> Iterator[Fault]:
     yield from twice(names, joints, "joint", document)
 
 
-def _fk_faults(names: Sequence[str], model: SolveModel, document: Document) -> Iterator[Fault]:
-    for name in model.fk:
-        if name not in names:
-            hint = near_match(name, list(names)) or f"known: {', '.join(names[:12])}"
-            message = f"no joint is called '{name}'"
-            yield document.fault("unknown-joint", message, ("fk", name), hint=hint, at_key=True)
-
-
-def _settings_faults(count: int, model: SolveModel, document: Document) -> Iterator[Fault]:
-    """Check the options that only make sense together with a chain of so many joints."""
-    yield from solver_faults(model, document)
-    yield from axes_faults(model, document)
-    options = model.options
-    if count < 2:
-        return
-    least = 0 if model.solver == "2d" else 1
-    if not least <= options.bend_reference < count:
-        message = f"must be {least} to {count - 1} in a chain of {count} joints"
-        found = f"{message}, not {options.bend_reference}"
-        yield document.fault("range", found, ("options", "bend_reference"))
-    held = options.held.base + options.held.end
-    if held >= count:
-        message = f"{held} joints are held, the chain has {count} and one must stay free"
-        yield document.fault("held", message, ("options", "held"))
-
-
 def _chain(model: SceneModel) -> Chain:
     base = model.chain.base
     turn = tuple(np.radians(base.rotation).tolist())
@@ -328,6 +303,7 @@ def joint_of(joint: JointModel) -> Joint:
         joint.pitch,
         joint.bank,
         joint.planar,
+        limit=joint.limit,
     )
 
 

@@ -114,6 +114,10 @@ class JointModel(Model):
             "[deg]; absent = the pitch range, [-180, 180] = free"
         ),
     ] = None
+    limit: Annotated[
+        str | dict[str, Any] | None,
+        Field(description="a limit of its own in place of the ranges: {use: name, ...}"),
+    ] = None
 
 
 class ChainModel(Model):
@@ -132,7 +136,10 @@ class GoalModel(Model):
     ] = None
     rotation: Annotated[
         Turn | None,
-        Field(description="in the world, HPB [deg]; for pose goals and 2D pole rotors"),
+        Field(
+            description="in the world, HPB [deg]; for pose goals, 2D pole rotors "
+            "and the option end_orientation"
+        ),
     ] = None
     quaternion: Annotated[Four | None, Field(description="w, x, y, z, instead of a rotation")] = (
         None

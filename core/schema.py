@@ -11,7 +11,7 @@ from limbik.core.params import member_name
 from limbik.core.registry import Registry
 from limbik.core.scenemodel import SceneModel
 from limbik.core.settings import Model
-from limbik.core.slots import SLOTS, SOLVER
+from limbik.core.slots import LIMIT, OPTIONS, SOLVER
 from limbik.core.strategy import Parameter, Strategy, layout
 from limbik.core.whole import OWN_SOLVERS
 
@@ -29,9 +29,12 @@ def scene_schema(registry: Registry) -> dict[str, Any]:
     _, models = models_json_schema([(m, "validation") for m in (SceneModel, BodyModel)])
     definitions: dict[str, Any] = models["$defs"]
     options = definitions["Settings"]["properties"]
-    for slot in SLOTS:
+    for slot in OPTIONS:
         found = registry.strategies(slot)
         options[slot] |= _choice(slot, [found[name].strategy for name in found])
+    limits = [found.strategy for found in registry.strategies(LIMIT.name).values()]
+    joint = definitions["JointModel"]["properties"][LIMIT.name]
+    joint["anyOf"] = _choice(LIMIT.name, limits)["anyOf"]
     solvers = registry.strategies(SOLVER.name).values()
     choice = _choice(SOLVER.name, [found.strategy for found in solvers])
     choice["anyOf"][:0] = [{"const": name} for name in OWN_SOLVERS]

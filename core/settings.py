@@ -3,7 +3,7 @@
 Angles are in degrees, lengths in the chain's unit. The defaults are the document's (C-17).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
@@ -15,6 +15,9 @@ Choice = str | dict[str, Any]
 def _pair(value: Any) -> Any:
     """Let a list from a scene stand for a tuple, which strict models refuse otherwise."""
     return tuple(value) if isinstance(value, list) else value
+
+
+Turn = Annotated[tuple[float, float, float], BeforeValidator(_pair)]
 
 
 class Model(BaseModel):
@@ -48,6 +51,29 @@ class ForbiddenCone(Model):
     ] = "stop"
 
 
+class Choose(Model):
+    """Which of a goal's solutions to take (000 §11; F-01)."""
+
+    by: Annotated[
+        Literal["nearest", "margin"],
+        Field(description="nearest to a pose, or with the most left to the nearest limit"),
+    ] = "nearest"
+    pose: Annotated[
+        dict[str, Turn] | None,
+        Field(
+            description="angles by joint, HPB [deg], the others at rest; absent = the pose before, "
+            "else the rest pose"
+        ),
+    ] = None
+    weights: Annotated[
+        dict[str, Annotated[float, Field(ge=0.0, le=1e6)]],
+        Field(default_factory=dict, description="how much a joint counts; 1 where absent [-]"),
+    ]
+    candidates: Annotated[
+        int, Field(ge=1, le=10_000, description="most other poses that are finished")
+    ] = 32
+
+
 class Settings(Model):
     """Everything a solve can be told besides chain and goal.
 
@@ -77,6 +103,9 @@ class Settings(Model):
     root_control: Choice = "none"
     bank_suppression: Choice = "none"
     finish: Choice = "newton"
+    choose: Annotated[
+        Choose | None, Field(description="which solution to take; absent = the first found")
+    ] = None
 
     coefficient_base: Annotated[
         float, Field(ge=0.0, le=2.0, description="bend coefficient [-]")
@@ -130,6 +159,20 @@ class Settings(Model):
         float,
         Field(ge=0.0, le=0.5, description="last part of the reach, pulled in smoothly; 0 = off"),
     ] = 0.0
+    stiffness: Annotated[
+        dict[str, Annotated[float, Field(ge=0.0, lt=1.0)]],
+        Field(
+            description="share by which CCD turns a joint less; `held` keeps joints still [-]",
+        ),
+    ] = {}
+    limit_ease: Annotated[
+        float,
+        Field(ge=0.0, le=90.0, description="zone before a limit where CCD slows; 0 = off [deg]"),
+    ] = 0.0
+    end_orientation: Annotated[
+        float,
+        Field(ge=0.0, le=1.0, description="share of the goal's orientation the end takes over [-]"),
+    ] = 0.0
     fk_strength: Annotated[
         float, Field(ge=0.0, le=1.0, description="strength of FK offsets [-]")
     ] = 1.0
@@ -143,6 +186,28 @@ class Settings(Model):
                 "hold_bend_vector goes with the modes manual and global, not with auto"
             )
         return self
+
+    @model_validator(mode="after")
+    def _a_choice_needs_a_finish(self) -> "Settings":
+        if self.choose is not None and self.finish in ("none", {"use": "none"}):
+            raise ValueError("choose needs a finish to try other solutions, not finish: none")
+        return self
+
+
+def narrowing(settings: Settings) -> Iterator[str]:
+    """Give the options that narrow ranges, which joints with limits of their own have not."""
+    if settings.root_control not in ("none", {"use": "none"}):
+        yield "root_control"
+    if settings.bank_lock:
+        yield "bank_lock"
+
+
+def joint_tables(settings: Settings) -> Iterator[tuple[tuple[str, ...], Mapping[str, object]]]:
+    """Give key path and content of each option that names joints."""
+    if settings.choose is not None:
+        yield ("choose", "pose"), settings.choose.pose or {}
+        yield ("choose", "weights"), settings.choose.weights
+    yield ("stiffness",), settings.stiffness
 
 
 ONLY_3D: Final = (
@@ -159,6 +224,10 @@ ONLY_3D: Final = (
     "clamp",
     "start",
     "soft_zone",
+    "end_orientation",
+    "choose",
+    "stiffness",
+    "limit_ease",
 )
 """Settings the 2D solver has no use for; giving one is an error."""
 

@@ -6,7 +6,7 @@ arguments. `params` is an instance of the strategy's params class.
 
 The functions that call a strategy from compiled code are offered here too, but loaded on first
 use (they need the compiler): `call_initial_bend`, `call_bend_vector`, `call_root_control`,
-`call_bank_suppression`, `call_finish`.
+`call_bank_suppression`, `call_finish`, `call_limit`.
 """
 
 from collections.abc import Callable
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from limbik.core.kernels.own import WIDTH as OWN_WIDTH
 from limbik.core.strategy import MAX_PARAMS as MAX_PARAMS
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from limbik.core.callers import call_bend_vector as call_bend_vector
     from limbik.core.callers import call_finish as call_finish
     from limbik.core.callers import call_initial_bend as call_initial_bend
+    from limbik.core.callers import call_limit as call_limit
     from limbik.core.callers import call_root_control as call_root_control
 
 PASSED_OVER = "none"
@@ -37,8 +39,8 @@ class Argument:
 
     Attributes:
         name: Name every kernel must give it.
-        kind: `count` (int), `number` (float), `vector` (1-D array), `matrix` (2-D array),
-            `matrices` (3-D array), `params`.
+        kind: `count` (int), `number` (float), `vector` (1-D array),
+            `matrix` (2-D array), `matrices` (3-D array), `params`.
         meaning: What it holds, with its shape and unit.
         written: Whether the kernel writes into it.
         infinite: Whether infinite values may be written.
@@ -137,14 +139,22 @@ def _finish_samples() -> list[Sample]:
     folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
 
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
-        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 32))
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 64))
         chain = (offsets, frozen, place, base, low, high)
-        return (np.array(goal), 1e-3, 1.8, *chain, 1, None, angles, rows, np.zeros(2))
+        own = np.zeros((3, OWN_WIDTH))
+        work = angles, rows, np.zeros(2)
+        return (np.array(goal), 1e-3, 1.8, *chain, own, 1, None, *work)
 
     return [
         sample([0.3, 0.5, 1.5], low, bound, angles),
         sample([0.0, 0.0, 0.2], -free, free, folded),
     ]
+
+
+def _limit_samples() -> list[Sample]:
+    """A joint at its zero pose, far from it, upright, and turned all round."""
+    turns = ([0.0, 0.0, 0.0], [1.5, -0.7, 2.5], [0.3, 0.5 * np.pi, 0.0], [np.pi, 0.0, -np.pi])
+    return [(np.array(turn), None, np.zeros(1)) for turn in turns]
 
 
 _PARAMS = Argument("params", "params", "the strategy's parameters, angles in radians")
@@ -221,10 +231,11 @@ FINISH = Slot(
             "low", "matrix", "(n, 3) limits, -inf where free, those of held joints equal [rad]"
         ),
         Argument("high", "matrix", "(n, 3) limits, inf where free [rad]"),
+        Argument("own", "matrix", "(n, 63) rows for `do_task` of joints with limits of their own"),
         Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
-        Argument("scratch", "matrix", "(n, 32) IN/OUT to work in, of any content", True),
+        Argument("scratch", "matrix", "(n, 64) IN/OUT to work in, of any content", True),
         Argument(
             "verdict",
             "vector",
@@ -236,9 +247,53 @@ FINISH = Slot(
     _finish_samples,
 )
 
-SLOTS: dict[str, Slot] = {
+LIMIT = Slot(
+    "limit",
+    "limbik_limits",
+    (
+        Argument(
+            "angles",
+            "vector",
+            "(3,) IN/OUT heading, pitch, bank from the joint's zero pose, in any form; untouched "
+            "if allowed, else an allowed turn near it [rad]",
+            True,
+        ),
+        _PARAMS,
+        Argument(
+            "margin",
+            "vector",
+            "(1,) OUT: angle that was left to the nearest end of the limit, 0 or less outside, "
+            "inf where there is none [rad]",
+            True,
+            True,
+        ),
+    ),
+    _limit_samples,
+)
+"""A joint's own limit in place of ranges of heading, pitch and bank (M-08)."""
+
+LIMIT_TASK = Slot(
+    "limit_task",
+    "",
+    (
+        Argument("task", "count", "what is to be done"),
+        _PARAMS,
+        Argument("row", "vector", "IN/OUT see `limbik.core.kernels.limit.do_task`", True),
+    ),
+    list,
+)
+"""limbik's own work on joints with limits, compiled apart; no plug-in fills it."""
+
+OPTIONS: dict[str, Slot] = {
     slot.name: slot for slot in (INITIAL_BEND, BEND_VECTOR, ROOT_CONTROL, BANK_SUPPRESSION, FINISH)
 }
+"""The slots that are options of a solve."""
+
+SLOTS: dict[str, Slot] = {**OPTIONS, LIMIT.name: LIMIT}
+"""All that run compiled inside a solve: options, and the limits of joints."""
+
+CALLED: dict[str, Slot] = {**SLOTS, LIMIT_TASK.name: LIMIT_TASK}
+"""All that is called by address."""
 
 SOLVER = Slot(
     "solver",
@@ -258,7 +313,7 @@ HOOKED: dict[str, Slot] = {**SLOTS, SOLVER.name: SOLVER}
 
 def __getattr__(name: str) -> Any:
     """Load the callers on first use: they need the compiler, everything else here does not."""
-    if name.startswith("call_") and name.removeprefix("call_") in SLOTS:
+    if name.startswith("call_") and name.removeprefix("call_") in CALLED:
         from limbik.core import callers
 
         return getattr(callers, name)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from limbik.core.chain import AXES, Chain
 from limbik.core.errors import InputError
+from limbik.core.jointlimits import Limits, margin_of
 from limbik.core.rotation import Array
 
 AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
@@ -150,6 +151,7 @@ class Solution:
             pose is looked for.
         continuity: What the next solve may be given; None for many.
         trace: Every stage's pose, when asked for.
+        limits: The joints' own limits, n of them, None for joints with ranges; None if all have.
     """
 
     chain: Chain
@@ -165,6 +167,7 @@ class Solution:
     nearest: float | Array | None = None
     continuity: Continuity | None = None
     trace: tuple[Stage, ...] | None = None
+    limits: Limits | None = None
 
     @property
     def reached(self) -> bool | Array:
@@ -185,10 +188,11 @@ class Solution:
         picked: dict[str, Any] = {
             f.name: None if (value := getattr(self, f.name)) is None else value[row]
             for f in fields(self)
-            if f.name not in ("chain", "continuity", "trace", "planar_limits")
+            if f.name not in ("chain", "continuity", "trace", "planar_limits", "limits")
         }
         return picked | {
             "chain": self.chain,
+            "limits": self.limits,
             "iterations": int(picked["iterations"]),
             "distance": float(picked["distance"]),
             "bend_angle": float(picked["bend_angle"]),
@@ -199,12 +203,17 @@ class Solution:
     def limits_touched(self) -> tuple[str, ...]:
         """Return the joint axes that rest on an end of their range, like `elbow pitch`.
 
-        Fixed axes are left out: they always rest.
+        Fixed axes are left out: they always rest. A joint that rests on its own limit is told with
+        the limit's name, like `shoulder cone`.
         """
         low, high = self.chain.low, self.chain.high
         resting = (self.angles <= low + AT_LIMIT) | (self.angles >= high - AT_LIMIT)
         joints, axes = np.nonzero(resting & (high - low > AT_LIMIT))
-        return tuple(
-            f"{self.chain.names[joint]} {AXES[axis]}"
-            for joint, axis in zip(joints.tolist(), axes.tolist(), strict=True)
-        )
+        found = [
+            (joint, AXES[axis]) for joint, axis in zip(joints.tolist(), axes.tolist(), strict=True)
+        ]
+        for joint, limit in enumerate(self.limits or ()):
+            mirrored = self.chain.joints[joint].mirrored
+            if limit and margin_of(limit, mirrored, self.angles[joint]) < AT_LIMIT:
+                found.append((joint, limit.name))
+        return tuple(f"{self.chain.names[joint]} {what}" for joint, what in sorted(found))

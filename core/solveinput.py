@@ -6,7 +6,8 @@ from numpy.typing import ArrayLike
 from limbik.core.chain import Chain
 from limbik.core.errors import ChainError, InputError
 from limbik.core.rotation import Array
-from limbik.core.settings import Settings
+from limbik.core.settings import Settings, joint_tables
+from limbik.core.wording import near_match
 
 LARGEST = 1e100  # squares of larger numbers overflow
 
@@ -57,6 +58,37 @@ def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Arra
     return array
 
 
+def checked_turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
+    """Return turns of goals; a row of NaNs stands for a goal without one."""
+    try:
+        rows = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        return checked(values, shape, "goal turns")
+    absent = np.isnan(rows).all(axis=-1, keepdims=True)
+    found = checked(np.where(absent, 0.0, rows), shape, "goal turns")
+    return np.where(absent, np.nan, found)
+
+
+def with_turns(goals: Array, turns: ArrayLike) -> Array:
+    """Return goals and how each is turned in one array, (m, 6)."""
+    given = checked_turns(turns, (None, 3))
+    if len(given) != len(goals):
+        message = f"goal turns: expected {len(goals)}, one a goal, found {len(given)}"
+        raise InputError(message)
+    return np.hstack([goals, given])
+
+
+def checked_memory(values: Array, joints: int) -> Array:
+    """Return a copy of a continuity's numbers for a chain of so many joints."""
+    memory = np.array(values, np.float64, order="C")
+    if memory.shape != (joints + 4, 3):
+        message = f"it is of a chain of {len(memory) - 4} joints, this one has {joints}"
+        raise InputError(f"continuity: {message}")
+    if not np.isfinite(memory).all():
+        raise InputError("continuity: every number must be finite")
+    return memory
+
+
 def _shown(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
 
@@ -77,6 +109,12 @@ def check_joints(chain: Chain, settings: Settings, first: int) -> None:
             f"bend_reference {settings.bend_reference}: this chain of {len(chain)} joints "
             f"allows {first} to {len(chain) - 1}"
         )
+    for path, table in joint_tables(settings):
+        for name in table:
+            if name not in chain.names:
+                known = near_match(name, list(chain.names)) or f"known: {', '.join(chain.names)}"
+                message = f"{'.'.join(path)}: no joint is called '{name}' ({known})"
+                raise ChainError(message)
     held = settings.held.base + settings.held.end
     if held > len(chain) - 1:
         raise ChainError(

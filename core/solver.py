@@ -13,17 +13,24 @@ from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import InputError, PluginError
-from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_options
+from limbik.core.errors import PluginError
+from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
+from limbik.core.jointlimits import bound_limits
 from limbik.core.pose import forward_kinematics
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
-from limbik.core.slots import MAX_PARAMS, PASSED_OVER
 from limbik.core.solution import Continuity, Solution, Stage, Status
-from limbik.core.solveinput import Arrays, check_joints, checked
+from limbik.core.solveinput import (
+    Arrays,
+    check_joints,
+    checked,
+    checked_memory,
+    checked_turns,
+    with_turns,
+)
 
 FAILED = 10  # status numbers from here on name the slot whose strategy failed
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
@@ -64,6 +71,7 @@ class Solver:
         self.strategies: dict[str, Bound] = {
             slot: self.registry.bind(slot, getattr(given, slot)) for slot in self._slots
         }
+        self.limits = bound_limits(chain, given, self.registry)
         self._fixed: tuple[Any, ...] = self._flatten()
         self._none = np.zeros((len(chain), 3))
         self._fresh = np.zeros((len(chain) + 4, 3))
@@ -109,18 +117,13 @@ class Solver:
 
     def _flatten(self) -> tuple[Any, ...]:
         """Return what the kernel gets before the strategies."""
-        return flat_body(self.chain, self.settings), flat_options(self.chain, self.settings)
+        flat = flat_body(self.chain, self.settings), flat_options(self.chain, self.settings)
+        return (*flat, flat_choice(self.chain, self.settings)) if self._fully else flat
 
     @cached_property
     def _plugs(self) -> Plugs:
         """Addresses and parameters of the strategies; compiles them on first use."""
-        chosen, unused = self.strategies, np.zeros(MAX_PARAMS)
-        return Plugs(
-            **{slot: _address(chosen[slot]) if slot in chosen else 0 for slot in SLOT_ORDER},
-            params=np.array(
-                [chosen[slot].values if slot in chosen else unused for slot in SLOT_ORDER]
-            ),
-        )
+        return flat_plugs(self.chain, self.settings, self.strategies, self.limits)
 
     @cached_property
     def _kernel(self) -> Callable[..., int]:
@@ -136,12 +139,20 @@ class Solver:
             *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
 
-    @staticmethod
-    def _entry() -> Callable[..., int]:
-        """The solve of many rows, not compiled yet."""
-        from limbik.core.kernels.solve3d import solve_goals
+    @property
+    def _fully(self) -> bool:
+        """Whether the settings ask for what is compiled apart."""
+        return self.settings.choose is not None or self.settings.end_orientation > 0.0
 
-        return solve_goals
+    def _entry(self) -> Callable[..., int]:
+        """The solve of many rows, not compiled yet."""
+        if not self._fully:
+            from limbik.core.kernels.solve3d import solve_goals
+
+            return solve_goals
+        from limbik.core.kernels.solve_fully import solve_fully
+
+        return solve_fully
 
     def solve(
         self,
@@ -150,6 +161,7 @@ class Solver:
         fk_offsets: ArrayLike | None = None,
         continuity: Continuity | None = None,
         trace: bool = False,
+        goal_turn: ArrayLike | None = None,
     ) -> Solution:
         """Put the chain's end on a goal.
 
@@ -158,6 +170,8 @@ class Solver:
             fk_offsets: FK component relative to the rest pose, HPB, (n, 3) [rad].
             continuity: What an earlier solve returned; None solves without a past (M-02).
             trace: Whether to return every stage's pose.
+            goal_turn: How the goal is turned in the world, HPB, (3,) [rad], or NaNs; the end takes
+                it over by the setting `end_orientation` (M-05).
 
         Returns:
             The pose with status, distance and the continuity for a next solve.
@@ -167,7 +181,8 @@ class Solver:
             PluginError: A strategy gave a result that is not a number.
         """
         rows = checked(goal, (3,), "goal").reshape(1, 3)
-        return self._solve_row(self._goals(rows), fk_offsets, continuity, trace)
+        turns = None if goal_turn is None else checked_turns(goal_turn, (3,)).reshape(1, 3)
+        return self._solve_row(self._rows(rows, turns), fk_offsets, continuity, trace)
 
     def solve_many(
         self,
@@ -175,6 +190,7 @@ class Solver:
         *,
         fk_offsets: ArrayLike | None = None,
         threads: int | None = None,
+        goal_turns: ArrayLike | None = None,
     ) -> Solution:
         """Solve goals that have nothing to do with each other, on all cores.
 
@@ -182,6 +198,7 @@ class Solver:
             goals: World positions, (m, 3) [length].
             fk_offsets: As in `solve`, one set for all goals.
             threads: How many to use; None for as many as there are cores.
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
 
         Returns:
             A solution whose arrays have a leading goal axis; bit for bit what `solve` gives.
@@ -190,8 +207,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        rows = checked(goals, (None, 3), "goals")
-        return self._solve_rows(self._goals(rows), fk_offsets, threads)
+        rows = self._rows(checked(goals, (None, 3), "goals"), goal_turns)
+        return self._solve_rows(rows, fk_offsets, threads)
 
     def follow(
         self,
@@ -199,6 +216,7 @@ class Solver:
         *,
         fk_offsets: ArrayLike | None = None,
         continuity: Continuity | None = None,
+        goal_turns: ArrayLike | None = None,
     ) -> Solution:
         """Solve a path in order, each goal with the continuity of the one before.
 
@@ -206,6 +224,7 @@ class Solver:
             goals: World positions, (m, 3) [length].
             fk_offsets: As in `solve`, one set for all goals.
             continuity: State before the first goal; None for the rest pose's.
+            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
 
         Returns:
             A solution with a leading goal axis and the continuity after the last goal.
@@ -214,8 +233,8 @@ class Solver:
             InputError: The goals or the offsets are not finite or have another shape.
             PluginError: A strategy gave a result that is not a number.
         """
-        rows = checked(goals, (None, 3), "goals")
-        return self._follow_rows(self._goals(rows), fk_offsets, continuity)
+        rows = self._rows(checked(goals, (None, 3), "goals"), goal_turns)
+        return self._follow_rows(rows, fk_offsets, continuity)
 
     def _solve_row(
         self,
@@ -226,8 +245,7 @@ class Solver:
     ) -> Solution:
         """Solve one row, (1, k): the goal, then what else the kernel takes for each."""
         memory = self._memory(continuity)
-        # The early stages, the rounds and the finish.
-        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + 1
+        stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + len(_LATE_STAGES)
         out = Arrays(1, len(self.chain), stages if trace else 0, self._columns)
         count = self._run(rows, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
@@ -288,7 +306,11 @@ class Solver:
     def _solution(self, numbers: Array, row: Array, **fields: Any) -> Solution:
         """Make the solution of one goal or many; numbers and rows have more to read."""
         nearest = numbers[..., 7]
-        return Solution(**fields, nearest=float(nearest) if numbers.ndim == 1 else nearest)
+        return Solution(
+            **fields,
+            nearest=float(nearest) if numbers.ndim == 1 else nearest,
+            limits=self.limits if any(self.limits) else None,
+        )
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
         return self._kernel(*self._arguments(goals, fk, memory, chained, out))
@@ -312,7 +334,10 @@ class Solver:
 
     def _blame(self, failure: int, goal: Array) -> PluginError:
         """Return the error of a strategy whose result is not a number."""
-        bound = self.strategies[SLOT_ORDER[failure - FAILED]]
+        if failure == FAILED + len(SLOT_ORDER):
+            bound = next(limit for limit in self.limits if limit is not None)
+        else:
+            bound = self.strategies[SLOT_ORDER[failure - FAILED]]
         return PluginError(
             f"its result for the goal {goal.tolist()} is not a finite number",
             bound.plugin.name,
@@ -326,19 +351,16 @@ class Solver:
             return goals
         return np.array(pull_into_reach(self.chain, goals), order="C")
 
+    def _rows(self, goals: Array, turns: ArrayLike | None) -> Array:
+        """Return what the kernel takes for each goal: its position, and its turn if it has one."""
+        goals = self._goals(goals)
+        return goals if turns is None else with_turns(goals, turns)
+
     def _memory(self, continuity: Continuity | None) -> Array:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
         if continuity is None:
             return self._fresh.copy()
-        memory = np.array(continuity.memory, np.float64, order="C")
-        if memory.shape != self._fresh.shape:
-            raise InputError(
-                f"continuity: it is of a chain of {len(memory) - 4} joints, "
-                f"this one has {len(self.chain)}"
-            )
-        if not np.isfinite(memory).all():
-            raise InputError("continuity: every number must be finite")
-        return memory
+        return checked_memory(continuity.memory, len(self.chain))
 
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:
@@ -367,7 +389,7 @@ class Solver:
 
     def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
         rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
-        names = [*self._early_stages, *rounds, "finish"]
+        names = [*self._early_stages, *rounds, *_LATE_STAGES]
         positions, _ = forward_kinematics(self.chain, angles)
         return tuple(
             Stage(name, pose, places)
@@ -375,9 +397,5 @@ class Solver:
         )
 
 
+_LATE_STAGES = ("finish", "choice")
 _STATUS = {int(status): status for status in Status}
-
-
-def _address(bound: Bound) -> int:
-    """Return the address of a strategy, 0 for one that is passed over."""
-    return 0 if bound.name == PASSED_OVER else bound.address

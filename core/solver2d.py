@@ -17,13 +17,14 @@ from limbik.core.flatten2d import (
     flat_plane_body,
     flat_plane_options,
 )
+from limbik.core.jointlimits import refuse_limits
 from limbik.core.pole import Pole, goal_axes, rotor_frames, turned_poles
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.settings import Settings, misfits_in_2d
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
-from limbik.core.solveinput import check_joints, checked
+from limbik.core.solveinput import check_joints, checked, checked_turns
 from limbik.core.solver import Solver
 
 COLUMNS: Final = 17  # numbers of a solve before its planar angles
@@ -78,6 +79,7 @@ class Solver2D(Solver):
         if misfits:
             raise InputError(Fault(code, message, key) for key, code, message in misfits)
         check_joints(chain, settings, 0)
+        refuse_limits(chain, "the 2D solver")
 
     def _flatten(self) -> tuple[Any, ...]:
         chain, settings = self.chain, self.settings
@@ -92,8 +94,7 @@ class Solver2D(Solver):
         found: Planar = self._fixed[2]
         return found
 
-    @staticmethod
-    def _entry() -> Callable[..., int]:
+    def _entry(self) -> Callable[..., int]:
         from limbik.core.kernels.solve2d import solve_plane_goals
 
         return solve_plane_goals
@@ -128,7 +129,7 @@ class Solver2D(Solver):
         """
         goals = checked(goal, (3,), "goal").reshape(1, 3)
         poles = None if pole is None else checked(pole, (3,), "pole").reshape(1, 3)
-        turns = None if goal_turn is None else _turns(goal_turn, (3,)).reshape(1, 3)
+        turns = None if goal_turn is None else checked_turns(goal_turn, (3,)).reshape(1, 3)
         asked = self._ask(goals, poles, turns)
         return asked.finish(self._solve_row(asked.rows, fk_offsets, continuity, trace))
 
@@ -260,7 +261,7 @@ class Solver2D(Solver):
         self, goals: Array, poles: ArrayLike | None, goal_turns: ArrayLike | None
     ) -> "_Asked":
         several = None if poles is None else checked(poles, (None, 3), "poles")
-        turns = None if goal_turns is None else _turns(goal_turns, (None, 3))
+        turns = None if goal_turns is None else checked_turns(goal_turns, (None, 3))
         for given, what in ((several, "poles"), (turns, "goal turns")):
             if given is not None and len(given) != len(goals):
                 raise InputError(f"{what}: expected {len(goals)}, one a goal, found {len(given)}")
@@ -300,17 +301,6 @@ class Solver2D(Solver):
     @cached_property
     def _limits(self) -> Array:
         return np.stack([self._planar.low, self._planar.high])
-
-
-def _turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
-    """Return turns of goals; a row of NaNs stands for a goal without one."""
-    try:
-        rows = np.asarray(values, np.float64)
-    except (TypeError, ValueError):
-        return checked(values, shape, "goal turns")
-    absent = np.isnan(rows).all(axis=-1, keepdims=True)
-    found = checked(np.where(absent, 0.0, rows), shape, "goal turns")
-    return np.where(absent, np.nan, found)
 
 
 _PLANE_FROM = {int(source): source for source in PlaneFrom}

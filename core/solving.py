@@ -38,7 +38,7 @@ def solve_scene(
     for row, goal in enumerate(scene.goals):
         before = solutions[-1].continuity if scene.follow and solutions else None
         asked: dict[str, Any] = {"fk_offsets": scene.fk_offsets, "continuity": before}
-        if isinstance(solver, Solver2D) and scene.goal_turns is not None:
+        if scene.goal_turns is not None:
             asked["goal_turn"] = scene.goal_turns[row]
         solutions.append(solver.solve(goal, trace=True, **asked))
     return solutions
@@ -86,7 +86,7 @@ def solve_part(
         A solution with a leading goal axis.
     """
     asked: dict[str, Any] = {"fk_offsets": scene.fk_offsets}
-    if isinstance(solver, Solver2D) and scene.goal_turns is not None:
+    if scene.goal_turns is not None:
         asked["goal_turns"] = scene.goal_turns[part]
     if scene.follow:
         return solver.follow(scene.goals[part], continuity=continuity, **asked)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core import cache
-from limbik.core.jit import Entry
+from limbik.core.jit import Entry, Late
 
 # The compiler has its own versions of these packages' functions.
 _KNOWN_TO_COMPILER = {"numpy", "numba", "math", "builtins"}
@@ -20,7 +20,7 @@ _PACKAGE = __name__.partition(".")[0]
 
 def is_foreign(value: Any) -> bool:
     """Whether a value is a plain Python function or an entry the compiler does not know yet."""
-    if isinstance(value, Entry):
+    if isinstance(value, Entry | Late):
         return True
     return isinstance(value, FunctionType) and _top(value) not in _KNOWN_TO_COMPILER
 
@@ -93,7 +93,8 @@ def reached(function: FunctionType) -> list[FunctionType]:
             continue
         found[id(here)] = here
         for _, value in references(here):
-            plain: Any = value.function if isinstance(value, Entry) else value
+            found_late = value.target() if isinstance(value, Late) else value
+            plain: Any = found_late.function if isinstance(found_late, Entry) else found_late
             plain = getattr(plain, "py_func", plain)
             if is_foreign(plain):
                 waiting.append(plain)

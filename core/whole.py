@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import LimbikError, PluginError
+from limbik.core.jointlimits import refuse_limits
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
@@ -53,6 +54,7 @@ def prepare(bound: Bound, chain: Chain, settings: Settings) -> Batch:
         ChainError: It does not solve this kind of chain.
         PluginError: It failed.
     """
+    refuse_limits(chain, f"the solver {bound.name}")
     params = unflatten(bound.strategy.params, flatten(bound.params))
     try:
         batch: Batch = bound.strategy.kernel(chain, settings, params)

@@ -62,6 +62,7 @@ def finish(
     base_rotation: Array,
     low: Array,
     high: Array,
+    own: Array,
     reachable: int,
     params: Array,
     angles: Array,
@@ -79,6 +80,7 @@ def finish(
         base_rotation,
         low,
         high,
+        own,
         reachable,
         rebuild(params),
         angles,
@@ -87,7 +89,25 @@ def finish(
     )
 
 
+def limit(angles: Array, params: Array, margin: Array) -> None:
+    """Enter a joint's limit."""
+    kernel(angles, rebuild(params), margin)
+
+
+def limit_task(task: int, params: Array, row: Array) -> None:
+    """Enter the tasks of joints with limits of their own."""
+    kernel(task, rebuild(params), row)
+
+
 TEMPLATES: dict[str, Any] = {
     template.__name__: template
-    for template in (initial_bend, bend_vector, root_control, bank_suppression, finish)
+    for template in (
+        initial_bend,
+        bend_vector,
+        root_control,
+        bank_suppression,
+        finish,
+        limit,
+        limit_task,
+    )
 }

@@ -13,6 +13,7 @@ BUILT_IN = (
     "limbik.plugins.root_control.prefer_flip",
     "limbik.plugins.bank_suppression.none",
     "limbik.plugins.bank_suppression.threshold",
+    "limbik.plugins.limits.cone",
     "limbik.plugins.finish.none",
     "limbik.plugins.finish.newton",
     "limbik.plugins.formats.urdf_input",

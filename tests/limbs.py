@@ -238,5 +238,7 @@ OPTIONS = st.fixed_dictionaries(
         "finish": st.sampled_from(["none", "newton"]),
         "start": st.sampled_from(["bend", "current"]),
         "soft_zone": st.floats(0.0, 0.2),
+        "end_orientation": st.floats(0.0, 1.0),
+        "limit_ease": st.floats(0.0, 90.0),
     },
 )

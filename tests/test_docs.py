@@ -26,7 +26,7 @@ IDS = (
     + [f"E-11{letter}" for letter in "ABCDEFGHIJKLM"]
     + [f"K-{k:02}" for k in range(1, 9)]
     + [f"J-{k:02}" for k in range(1, 9)]
-    + ["D-09", "G-02", "L-06", "M-02", "M-05", "M-13"]
+    + ["D-09", "F-01", "G-02", "L-06", "M-02", "M-05", "M-08", "M-09", "M-13"]
 )
 
 

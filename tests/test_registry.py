@@ -63,6 +63,7 @@ def test_built_in_names_are_those_of_the_document() -> None:
         "root_control": ["none", "prefer-flip", "suppress-flip"],
         "bank_suppression": ["none", "threshold"],
         "finish": ["newton", "none"],
+        "limit": ["cone"],
     }
     assert registry.broken == ()
 

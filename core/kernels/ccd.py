@@ -3,6 +3,7 @@
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import place_from
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.own import COMPLIANCE
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -51,7 +52,8 @@ def ccd_round(
         target = unit(rotate_back(parent, subtract(goal, origin)))
         if not has_direction(operating) or not has_direction(target):
             continue
-        if turn_joint(joint, operating, target, strength, True, pose, options, plugs):
+        share = strength * pose.own[joint, COMPLIANCE]
+        if turn_joint(joint, operating, target, share, True, pose, options, plugs):
             moved = True
             end = add(origin, rotate(parent, rotate(matrix(pose.relative, joint), local)))
     if moved:

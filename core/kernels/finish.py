@@ -53,6 +53,7 @@ def end_solve(goal: Vector, body: Body, options: Options, plugs: Plugs, pose: Po
         body.base_rotation,
         pose.low,
         pose.high,
+        pose.own,
         int(reachable),
         plugs.params[4],
         pose.angles,

@@ -6,6 +6,8 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.layout import Body, Options, Pose
+from limbik.core.kernels.limit import pulled_inside
+from limbik.core.kernels.own import LIMIT, WIDTH
 from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
@@ -42,8 +44,9 @@ def new_pose(n: int) -> Pose:
         np.zeros(n, np.int64),
         np.zeros((3, n)),
         np.zeros((n, 3)),
+        np.zeros((n, WIDTH)),
         np.zeros((8, 3)),
-        np.zeros((n, 32)),
+        np.zeros((n, 64)),
         np.zeros(2),
     )
 
@@ -83,7 +86,9 @@ def place_from(first: int, body: Body, pose: Pose) -> None:
 
 @kernel
 def set_angles(joint: int, angles: Vector, pose: Pose) -> None:
-    """Give a joint angles [rad] and the rotation they make."""
+    """Give a joint angles [rad], pulled into its own limit, and the rotation they make."""
+    if pose.own[joint, LIMIT] != 0.0:
+        angles = pulled_inside(angles, pose.own[joint])
     store_vector(angles, pose.angles, joint)
     store_matrix(hpb_to_matrix(angles), pose.relative, joint)
 

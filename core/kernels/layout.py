@@ -72,6 +72,8 @@ class Options(NamedTuple):
     """Whether CCD starts from the pose before, where there is one, not from the bend pose."""
     soft_zone: float
     """Share of the reach from the bend root in which goals are pulled in; 0 = off."""
+    limit_ease: float
+    """Width of the zone before a limit in which CCD slows a joint [rad]; 0 = off."""
     fk_strength: float
     fk_mix: float
 
@@ -86,6 +88,23 @@ class Plugs(NamedTuple):
     finish: int
     params: Array
     """One row a slot in the order above, (5, 16)."""
+    own: Array
+    """What is each joint's own, columns as in `limbik.core.kernels.own`, (n, WIDTH)."""
+
+
+class Choice(NamedTuple):
+    """What few solves ask for, see `limbik.core.kernels.solve_fully`."""
+
+    by: int
+    """How to choose among solutions: 0 = take the first, see `limbik.core.kernels.choose`."""
+    candidates: int
+    pose_given: bool
+    pose: Array
+    """Reference pose if given, (n, 3) [rad]."""
+    weights: Array
+    """(n,) [-]"""
+    end_orientation: float
+    """Share of the goal's orientation that the end takes over; 0 = off."""
 
 
 class Pose(NamedTuple):
@@ -117,10 +136,12 @@ class Pose(NamedTuple):
     """Bone lengths from the root over root-to-end length, weights, angles [rad], (3, n)."""
     directions: Array
     """Each joint's direction to the end in the aim pose, world, (n, 3); off-axis layout only."""
+    own: Array
+    """As in `Plugs`, with room to work in, (n, WIDTH)."""
     scratch: Array
     """Arguments of strategies, (8, 3)."""
     finish_rows: Array
-    """What a finish works in, (n, 32)."""
+    """What a finish works in, (n, 64)."""
     verdict: Array
     """What a finish says, and the least distance to the goal it found [length], (2,)."""
 

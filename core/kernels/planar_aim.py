@@ -23,6 +23,7 @@ from limbik.core.kernels.rotation import (
     scale,
     store_matrix,
     store_vector,
+    transposed,
     turn_about,
     unit,
     vector,
@@ -32,12 +33,6 @@ from limbik.core.rotation import Array
 X_AXIS = (1.0, 0.0, 0.0)
 ROLL_KEPT = 58.0 * pi / 180.0  # [rad], from the resting end to the goal
 ROLL_GONE = 90.0 * pi / 180.0  # [rad]
-
-
-@kernel
-def transposed(m: Matrix) -> Matrix:
-    """Return the inverse of a rotation."""
-    return column(m, 0), column(m, 1), column(m, 2)
 
 
 @kernel

@@ -5,7 +5,7 @@ from math import atan2, cos, hypot, inf, sin
 from limbik.core.jit import kernel
 from limbik.core.kernels.bend_pose import bone_angles
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
-from limbik.core.kernels.planar_aim import offset_turn, transposed
+from limbik.core.kernels.planar_aim import offset_turn
 from limbik.core.kernels.planar_layout import Planar, PlanarPose
 from limbik.core.kernels.rotation import (
     ZERO_LENGTH,
@@ -14,6 +14,7 @@ from limbik.core.kernels.rotation import (
     matrix,
     multiply,
     rotate,
+    transposed,
     vector,
     wrap_angle,
 )

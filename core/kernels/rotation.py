@@ -166,6 +166,12 @@ def multiply(left: Matrix, right: Matrix) -> Matrix:
 
 
 @kernel
+def transposed(m: Matrix) -> Matrix:
+    """Return the transposed matrix."""
+    return column(m, 0), column(m, 1), column(m, 2)
+
+
+@kernel
 def column(m: Matrix, index: int) -> Vector:
     """Return a column of a matrix."""
     return m[0][index], m[1][index], m[2][index]
@@ -271,3 +277,33 @@ def axis_trig_to_matrix(axis: Vector, s: float, c: float) -> Matrix:
         (y * x * d + z * s, c + y * y * d, y * z * d - x * s),
         (z * x * d - y * s, z * y * d + x * s, c + z * z * d),
     )
+
+
+@kernel
+def turn_by(v: Vector) -> Matrix:
+    """Return the matrix of a rotation vector: its axis times its angle [rad]."""
+    angle = norm(v)
+    if not angle > 0.0:
+        return (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    return turn_about(scale(v, 1.0 / angle), angle)
+
+
+@kernel
+def rotation_vector(m: Matrix) -> Vector:
+    """Return axis times angle [rad] of a rotation matrix, 0..π: `turn_by` backwards."""
+    twice_sine = (m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1])
+    size = norm(twice_sine)
+    cosine = m[0][0] + m[1][1] + m[2][2] - 1.0
+    angle = atan2(size, cosine)
+    if size > 1e-4 or cosine > 0.0:
+        return scale(twice_sine, angle / size) if size > 0.0 else (0.0, 0.0, 0.0)
+    # Near a half turn: m + mᵀ - 2 cos(angle) is 2 (1 - cos(angle)) a aᵀ; take its longest column.
+    xx, yy, zz = 2.0 * m[0][0] - cosine, 2.0 * m[1][1] - cosine, 2.0 * m[2][2] - cosine
+    shared = (m[0][1] + m[1][0], m[0][2] + m[2][0], m[1][2] + m[2][1])
+    if xx >= yy and xx >= zz:
+        axis = unit((xx, shared[0], shared[1]))
+    elif yy >= zz:
+        axis = unit((shared[0], yy, shared[2]))
+    else:
+        axis = unit((shared[1], shared[2], zz))
+    return scale(axis, -angle if dot(axis, twice_sine) < 0.0 else angle)

@@ -14,7 +14,6 @@ from limbik.core.kernels.planar_aim import (
     apply_offsets,
     face_pole,
     put_initial_pose,
-    transposed,
 )
 from limbik.core.kernels.planar_bend import bend_planar, find_planar_joints
 from limbik.core.kernels.planar_ccd import find_bounds, planar_round
@@ -34,6 +33,7 @@ from limbik.core.kernels.rotation import (
     scale,
     store_vector,
     subtract,
+    transposed,
     vector,
 )
 from limbik.core.kernels.solve3d import (

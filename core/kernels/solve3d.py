@@ -1,6 +1,7 @@
 """The 3D solver: all stages of a solve, and many solves, in one compiled call (000 §7.6)."""
 
 from math import atan2, inf, isnan
+from typing import NamedTuple
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.bend_pose import bend_pose, find_bend_angles, turn_reference_axis
@@ -18,6 +19,7 @@ from limbik.core.kernels.frames import (
     set_angles,
 )
 from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
+from limbik.core.kernels.limit import limits_failed, load_own
 from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.rotation import (
     Vector,
@@ -37,6 +39,7 @@ from limbik.core.kernels.rotation import (
     vector,
 )
 from limbik.core.kernels.soft import soft_distance, soft_goal
+from limbik.core.kernels.trace import record
 from limbik.core.kernels.turn import turn_joint
 from limbik.core.rotation import Array
 from limbik.core.slots import call_root_control
@@ -65,13 +68,16 @@ def solve_goals(
     numbers: Array,
     trace: Array,
 ) -> int:
-    """Solve many goals one after the other.
+    """Solve many goals one after the other, each by the first solution found.
+
+    What few solves ask for is in `limbik.core.kernels.solve_fully`, so that no other waits for it
+    to be compiled.
 
     Args:
         body: The chain, n joints.
         options: Of the solve.
         plugs: Of the solve.
-        goals: (m, 3) [length], world.
+        goals: (m, 3) [length], world; further columns are passed over.
         fk: FK offsets, HPB, (n, 3) [rad].
         memory: Continuity, (n + 4, 3): see `limbik.core.solution.Continuity`. Ends as the one
             after the last goal.
@@ -85,18 +91,26 @@ def solve_goals(
     Returns:
         How many stages the trace holds.
     """
-    n = body.offsets.shape[0]
-    pose = new_pose(n)
+    pose = new_pose(body.offsets.shape[0])
+    load_own(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
         if not chained:
             copy_rows(kept, memory)
         goal = vector(goals, row)
-        stages = _solve(goal, body, options, plugs, fk, memory, pose, numbers[row], trace)
+        led = lead(goal, body, options, plugs, fk, memory, pose, trace)
+        failed, stages = led.failed, led.stages
+        if led.onward and plugs.finish != 0:
+            if not end_solve(led.pursued, body, options, plugs, pose):
+                failed = FAILED + 4
+            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            stages = record(stages, pose, trace)
+        settle_pose(body, options, fk, memory, pose)
+        write_numbers(goal, led, failed, options, pose, numbers[row])
         copy_rows(pose.angles, angles[row])
         copy_rows(pose.positions, positions[row])
-        for joint in range(n):
+        for joint in range(pose.world.shape[0]):
             copy_rows(pose.world[joint], rotations[row, joint])
     return stages
 
@@ -109,8 +123,25 @@ def copy_rows(source: Array, out: Array) -> None:
             out[row, place_in_row] = source[row, place_in_row]
 
 
+class Led(NamedTuple):
+    """Where CCD has led a goal's solve."""
+
+    pursued: Vector
+    """What the next stages pursue: the goal, pulled in where there is a soft zone [length]."""
+    bend: Vector
+    """Bend vector, world."""
+    iterations: int
+    """Rounds run, or the stage that was asked for."""
+    failed: int
+    """0, or the status of the strategy that failed."""
+    stages: int
+    """Traced so far."""
+    onward: bool
+    """Whether stages may follow that go on from CCD."""
+
+
 @kernel
-def _solve(
+def lead(
     goal: Vector,
     body: Body,
     options: Options,
@@ -118,16 +149,16 @@ def _solve(
     fk: Array,
     memory: Array,
     pose: Pose,
-    numbers: Array,
     trace: Array,
-) -> int:
-    """Take one goal through all stages; return the number of stages traced."""
-    bend_world = (0.0, 0.0, 0.0)
+) -> Led:
+    """Take one goal through all stages up to the last round of CCD."""
+    bend_world, pursued = (0.0, 0.0, 0.0), goal
     pose.verdict[0], pose.verdict[1] = 0.0, inf
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
-    stages = _record(stages, pose, trace)
+    stages = record(stages, pose, trace)
+    onward = failed == 0 and options.max_iterations > 0 and not options.full_fk
     if failed == 0 and options.max_iterations > -2 and not options.full_fk:
         iterations = -1
         aim, distance = _aim_pose(goal, body, options, plugs, memory, pose)
@@ -140,7 +171,7 @@ def _solve(
             bend = Bend(aim, usable(found, aim, body, options, pose))
             if options.max_iterations == -1:
                 _twist_aim(bend, body, options, fk, pose)
-            stages = _record(stages, pose, trace)
+            stages = record(stages, pose, trace)
             pursued = soft_goal(goal, distance, options, pose)
             if options.max_iterations > -1:
                 nearer = soft_distance(distance, options.root_to_end, options.soft_zone)
@@ -148,18 +179,11 @@ def _solve(
                     bend_pose(bend, body, options, plugs, fk, pose)
                     if options.from_current and options.max_iterations > 0:
                         _continue_pose(body, memory, pose)
-                    stages = _record(stages, pose, trace)
+                    stages = record(stages, pose, trace)
                     iterations, stages = _rounds(pursued, body, options, plugs, pose, trace, stages)
                 else:
                     failed = FAILED
-            if options.max_iterations > 0 and plugs.finish != 0 and failed == 0:
-                if not end_solve(pursued, body, options, plugs, pose):
-                    failed = FAILED + 4
-                pose.verdict[1] += norm(subtract(goal, pursued))
-                stages = _record(stages, pose, trace)
-    _settle_pose(body, options, fk, memory, pose)
-    _write_numbers(goal, bend_world, iterations, failed, options, pose, numbers)
-    return stages
+    return Led(pursued, bend_world, iterations, failed, stages, onward and failed == 0)
 
 
 @kernel
@@ -311,7 +335,7 @@ def _rounds(
         if done % RENEW_EVERY == 0:
             for joint in range(body.offsets.shape[0]):
                 renew_angles(joint, pose)
-        stages = _record(stages, pose, trace)
+        stages = record(stages, pose, trace)
         if not moved and strength >= 1.0:
             break
     return done, stages
@@ -324,21 +348,7 @@ def distance_to(goal: Vector, pose: Pose) -> float:
 
 
 @kernel
-def _record(stages: int, pose: Pose, trace: Array) -> int:
-    """Keep the pose's angles in the trace while it has room; return the stages so far."""
-    if stages >= trace.shape[0]:
-        return stages
-    for joint in range(pose.angles.shape[0]):
-        angles = vector(pose.angles, joint)
-        if pose.free[joint]:
-            # Read only: what is traced must not change what is solved.
-            angles = nearest_form(matrix_to_hpb(matrix(pose.relative, joint), angles[2]), angles)
-        store_vector(angles, trace[stages], joint)
-    return stages + 1
-
-
-@kernel
-def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
+def settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
     """Choose the angles' forms, mix in FK, renew the frames from the angles, keep the pose."""
     known = memory[3, 0] > 0.0
     mix = 1.0 if options.full_fk else options.fk_mix
@@ -352,30 +362,26 @@ def _settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: P
             angles = mixed(joint, angles, mix, body, fk, pose)
         angles = wrap_free(angles, vector(body.high, joint))
         set_angles(joint, angles, pose)
-        store_vector(angles, memory, joint + 4)
+        store_vector(vector(pose.angles, joint), memory, joint + 4)
     place_from(0, body, pose)
     memory[3, 0] = 1.0
 
 
 @kernel
-def _write_numbers(
-    goal: Vector,
-    bend_world: Vector,
-    iterations: int,
-    failed: int,
-    options: Options,
-    pose: Pose,
-    numbers: Array,
+def write_numbers(
+    goal: Vector, led: Led, failed: int, options: Options, pose: Pose, numbers: Array
 ) -> None:
     """Write what a solve says beside its pose into numbers (8,)."""
     distance = distance_to(goal, pose)
-    numbers[ITERATIONS] = iterations
+    numbers[ITERATIONS] = led.iterations
     numbers[DISTANCE] = distance
-    if failed != 0:
+    if limits_failed(pose.angles, pose.own):
+        numbers[STATUS] = FAILED + 5
+    elif failed != 0:
         numbers[STATUS] = failed
     else:
         numbers[STATUS] = status_of(goal, distance, options, pose)
-    numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = bend_world
-    local = rotate_back(matrix(pose.world, options.root), bend_world)
+    numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = led.bend
+    local = rotate_back(matrix(pose.world, options.root), led.bend)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
     numbers[NEAREST] = min(distance, pose.verdict[1])

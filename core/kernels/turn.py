@@ -8,6 +8,8 @@ from math import atan2, cos, inf, pi, sin, sqrt
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.layout import Options, Plugs, Pose
+from limbik.core.kernels.limit import slowed, turn_inside
+from limbik.core.kernels.own import LIMIT
 from limbik.core.kernels.re_aim import re_aim
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
@@ -83,16 +85,23 @@ def turn_joint(
     if not has_direction(axis):
         axis = _replacement_axis(relative, operating)
     aim = target if strength >= 1.0 else rotate(axis_trig_to_matrix(axis, s, c), current)
+    zone = options.limit_ease if in_ccd else 0.0
     locked = options.bank_lock and joint > options.root
     watched = locked or plugs.bank_suppression != 0
     if pose.free[joint] and not watched:
-        store_matrix(multiply(axis_trig_to_matrix(axis, s, c), relative), pose.relative, joint)
+        wanted = multiply(axis_trig_to_matrix(axis, s, c), relative)
+        if pose.own[joint, LIMIT] != 0.0:
+            turned = (pose.angles, pose.relative, pose.own[joint])
+            return turn_inside(joint, operating, target, wanted, zone, *turned)
+        store_matrix(wanted, pose.relative, joint)
         return True
     if pose.hinged[joint] and not options.plain_clamp and not options.max_violations:
-        return _turn_hinged(joint, operating, target, aim, relative, locked, in_ccd, pose, plugs)
+        return _turn_hinged(
+            joint, operating, target, aim, relative, zone, locked, in_ccd, pose, plugs
+        )
     full = multiply(axis_trig_to_matrix(axis, s, c), relative)
     return _turn_limited(
-        joint, operating, target, aim, relative, full, locked, in_ccd, pose, options, plugs
+        joint, operating, target, aim, relative, full, zone, locked, in_ccd, pose, options, plugs
     )
 
 
@@ -109,8 +118,17 @@ def _replacement_axis(relative: Matrix, operating: Vector) -> Vector:
 
 
 @kernel
-def _move(joint: int, before: Vector, angles: Vector, turn: Matrix, pose: Pose) -> bool:
-    """Give a joint new angles and their rotation; return whether they differ from before."""
+def _move(
+    joint: int, before: Vector, angles: Vector, turn: Matrix, zone: float, pose: Pose
+) -> bool:
+    """Give a joint new angles and their rotation; return whether they differ from before.
+
+    Where there is a limit ease, of width `zone` [rad], less of the way is gone.
+    """
+    if zone > 0.0 or pose.own[joint, LIMIT] != 0.0:
+        low, high = vector(pose.low, joint), vector(pose.high, joint)
+        angles = slowed(before, angles, low, high, zone, pose.own[joint])
+        turn = hpb_to_matrix(angles)
     change = subtract(angles, before)
     store_vector(angles, pose.angles, joint)
     store_matrix(turn, pose.relative, joint)
@@ -124,6 +142,7 @@ def _turn_hinged(
     target: Vector,
     aim: Vector,
     relative: Matrix,
+    zone: float,
     locked: bool,
     in_ccd: bool,
     pose: Pose,
@@ -146,7 +165,7 @@ def _turn_hinged(
         if steered != delta:
             low, high = _decided(angles, add(before, steered), low, high)
             angles, turn = re_aim(clamp_vector(before, low, high), low, high, operating, aim)
-    return _move(joint, before, angles, turn, pose)
+    return _move(joint, before, angles, turn, zone, pose)
 
 
 @kernel
@@ -157,6 +176,7 @@ def _turn_limited(
     aim: Vector,
     relative: Matrix,
     full: Matrix,
+    zone: float,
     locked: bool,
     in_ccd: bool,
     pose: Pose,
@@ -172,6 +192,7 @@ def _turn_limited(
         aim: Where this turn alone would bring it, parent frame.
         relative: The joint's rotation now.
         full: The rotation that the turn alone would make.
+        zone: Of the limit ease [rad]; 0 = off.
         locked: Whether the bank stays as it is.
         in_ccd: Whether a CCD round asks.
         pose: Changed in place.
@@ -211,10 +232,10 @@ def _turn_limited(
     pose.violations[joint] = pose.violations[joint] + 1 if exceeded else 0
     if exceeded and not options.plain_clamp:
         angles, turn = re_aim(clamp_vector(before, low, high), low, high, operating, aim)
-        return _move(joint, before, angles, turn, pose)
+        return _move(joint, before, angles, turn, zone, pose)
     if gap == 0.0 and not locked and plugs.bank_suppression == 0:
-        return _move(joint, before, wanted, full, pose)
-    return _move(joint, before, cut, hpb_to_matrix(cut), pose)
+        return _move(joint, before, wanted, full, zone, pose)
+    return _move(joint, before, cut, hpb_to_matrix(cut), zone, pose)
 
 
 @kernel

@@ -10,7 +10,7 @@ from limbik.core.errors import Fault, InputError
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
 from limbik.core.settings import Settings
-from limbik.core.slots import SLOTS, SOLVER
+from limbik.core.slots import OPTIONS, SOLVER
 from limbik.core.solving import scene_solver
 from limbik.core.validation import validation_faults
 from limbik.core.whole import OWN_SOLVERS, prepare
@@ -44,7 +44,7 @@ def _options_faults(
         Settings.model_validate(dict(options))
     except ValidationError as error:
         yield from validation_faults(error, document, Settings, place)
-    for slot in SLOTS:
+    for slot in OPTIONS:
         if isinstance(choice := options.get(slot), str | dict):
             yield from choice_faults(slot, choice, (*place, slot), document, registry)
 

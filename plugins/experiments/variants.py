@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 from limbik.core.settings import Settings
-from limbik.core.slots import SLOTS
+from limbik.core.slots import OPTIONS
 from limbik.plugins.experiments.model import ExperimentModel, StrategyModel
 
 Choice = str | dict[str, Any]
@@ -71,7 +71,7 @@ def place(options: dict[str, Any], name: str, value: Any) -> None:
         options[first] = value
         return
     found = options.get(first)
-    if found is None and first in SLOTS:
+    if found is None and first in OPTIONS:
         found = Settings.model_fields[first].default
     inner = {"use": found} if isinstance(found, str) else dict(found or {})
     place(inner, ".".join(rest), value)

@@ -8,6 +8,9 @@ from math import cos, sin
 from typing import NamedTuple
 
 from limbik.core.jit import kernel
+from limbik.core.kernels.limit import PULL, do_task
+from limbik.core.kernels.own import ANGLES as ANGLES_OF_OWN
+from limbik.core.kernels.own import LIMIT, OTHER, STEP, TASK_WIDTH
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -27,7 +30,9 @@ from limbik.core.rotation import Array
 # First columns of the scratch rows, three numbers each.
 ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
 POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
-WIDTH = 30
+OWN = 30  # what a joint's own limit works in, see `limbik.core.kernels.own`
+OWN_ANGLES, OWN_STEP = OWN + ANGLES_OF_OWN, OWN + STEP
+WIDTH = OWN + TASK_WIDTH
 
 
 class Linkage(NamedTuple):
@@ -79,7 +84,9 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
     """Place the chain at the angles of a column and return its end.
 
     Positions and the three turning axes of every joint are written too. An axis is signed so that
-    a growing angle moves a point r away from the joint by axis x r.
+    a growing angle moves a point r away from the joint by axis x r. A joint with a limit of its own
+    turns about the axes of its zero pose, by rotation vectors: there such a limit looks alike from
+    all sides.
 
     Args:
         angles: First column of the angles [rad].
@@ -98,6 +105,10 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
         hpb = read(scratch, joint, angles)
         frame = multiply(parent, hpb_to_matrix(hpb))
         write(origin, scratch, joint, POSITION)
+        if has_limit(joint, scratch):
+            for axis in range(3):
+                write(column(parent, axis), scratch, joint, AXES + 3 * axis)
+            continue
         # The elementary rotations have the sense opposite to the right-hand rule.
         write(scale(column(parent, 1), -1.0), scratch, joint, AXES)
         if turns(joint, 1, chain):
@@ -105,6 +116,45 @@ def end_at(angles: int, chain: Linkage, scratch: Array) -> Vector:
             write(scale(pitch, -1.0), scratch, joint, AXES + 3)
         write(scale(column(frame, 2), -1.0), scratch, joint, AXES + 6)
     return origin
+
+
+@kernel
+def load_own(own: Array, scratch: Array) -> None:
+    """Give the scratch what is each joint's own."""
+    for joint in range(own.shape[0]):
+        for place in range(TASK_WIDTH):
+            scratch[joint, OWN + place] = own[joint, place]
+
+
+@kernel
+def has_limit(joint: int, scratch: Array) -> bool:
+    """Return whether a joint has a limit of its own."""
+    return bool(scratch[joint, OWN + LIMIT] != 0.0)
+
+
+@kernel
+def pull_inside(angles: int, joint: int, scratch: Array) -> None:
+    """Pull the angles of a column into a joint's own limit, if it has one."""
+    if has_limit(joint, scratch):
+        own_task(PULL, joint, angles, WAY, scratch)
+        write(read(scratch, joint, OWN_ANGLES), scratch, joint, angles)
+
+
+@kernel
+def own_task(task: int, joint: int, angles: int, step: int, scratch: Array) -> None:
+    """Let a task be done on a joint with a limit of its own, see `do_task`.
+
+    Args:
+        task: Which.
+        joint: Index.
+        angles: First column of the angles [rad].
+        step: First column of the step.
+        scratch: (n, WIDTH); HOME is the other pose, the results are in OWN_ANGLES and OWN_STEP.
+    """
+    write(read(scratch, joint, angles), scratch, joint, OWN_ANGLES)
+    write(read(scratch, joint, step), scratch, joint, OWN_STEP)
+    write(read(scratch, joint, HOME), scratch, joint, OWN + OTHER)
+    do_task(task, scratch[joint, OWN:WIDTH])
 
 
 @kernel

@@ -33,6 +33,7 @@ from limbik.plugins.finish.linkage import (
     beyond_reach,
     copy_columns,
     end_at,
+    load_own,
     write,
 )
 from limbik.plugins.finish.settling import settle
@@ -81,6 +82,7 @@ def newton(
     base_rotation: Array,
     low: Array,
     high: Array,
+    own: Array,
     reachable: int,
     params: Newton,
     angles: Array,
@@ -89,6 +91,7 @@ def newton(
 ) -> None:
     """End a solve at its goal within the limits, or as near as there is a way to."""
     chain = Linkage(length, offsets, frozen, base_position, base_rotation, low, high)
+    load_own(own, scratch)
     point = (goal[0], goal[1], goal[2])
     aimed = min(params.precision * length, 0.5 * tolerance)
     for joint in range(angles.shape[0]):

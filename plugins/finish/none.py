@@ -21,6 +21,7 @@ def none(
     base_rotation: Array,
     low: Array,
     high: Array,
+    own: Array,
     reachable: int,
     params: NoParams,
     angles: Array,

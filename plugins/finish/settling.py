@@ -3,17 +3,23 @@
 from math import inf
 
 from limbik.core.jit import kernel
+from limbik.core.kernels.limit import WAY as TASK_WAY
 from limbik.core.kernels.rotation import Vector, subtract, wrap_angle
 from limbik.core.rotation import Array
 from limbik.plugins.finish.linkage import (
     ANGLES,
     HOME,
+    OWN_STEP,
     TRIAL,
     WAY,
     Linkage,
     copy_columns,
     end_at,
     find_motions,
+    has_limit,
+    own_task,
+    read,
+    write,
 )
 from limbik.plugins.finish.steps import find_step, take_step
 
@@ -51,6 +57,10 @@ def settle(place: Vector, chain: Linkage, scratch: Array) -> None:
 def _find_way(chain: Linkage, scratch: Array) -> None:
     """Write the way from the angles to HOME, the short one round where an axis is free."""
     for joint in range(chain.offsets.shape[0]):
+        if has_limit(joint, scratch):
+            own_task(TASK_WAY, joint, ANGLES, WAY, scratch)
+            write(read(scratch, joint, OWN_STEP), scratch, joint, WAY)
+            continue
         for axis in range(3):
             way = scratch[joint, HOME + axis] - scratch[joint, ANGLES + axis]
             scratch[joint, WAY + axis] = way if chain.high[joint, axis] < inf else wrap_angle(way)

@@ -5,7 +5,7 @@ from math import inf, pi
 from limbik.core.jit import kernel
 from limbik.core.kernels.rotation import wrap_angle
 from limbik.core.rotation import Array
-from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage
+from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage, pull_inside
 
 PUSH = 0.1  # [rad]
 
@@ -19,6 +19,7 @@ def off_home(chain: Linkage, scratch: Array) -> None:
             angle = scratch[joint, HOME + axis]
             up, down = angle + PUSH, max(angle - PUSH, low)
             scratch[joint, ANGLES + axis] = up if up <= high else down
+        pull_inside(ANGLES, joint, scratch)
 
 
 @kernel
@@ -45,3 +46,4 @@ def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
             elif number > 2:
                 angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
             scratch[joint, ANGLES + axis] = angle
+        pull_inside(ANGLES, joint, scratch)

@@ -12,6 +12,7 @@ from limbik.plugins.finish.linkage import (
     Linkage,
     axis_of,
     end_at,
+    has_limit,
     read,
     turns,
 )
@@ -32,6 +33,8 @@ def sweep(goal: Vector, chain: Linkage, scratch: Array) -> None:
     """
     end = end_at(ANGLES, chain, scratch)
     for joint in range(chain.offsets.shape[0] - 1, -1, -1):
+        if has_limit(joint, scratch):
+            continue  # the descent turns it
         origin = read(scratch, joint, POSITION)
         reach, target = subtract(end, origin), subtract(goal, origin)
         for axis in range(2, -1, -1):

@@ -1,7 +1,8 @@
 """Joint motion: every sample solved in order, and what is wrong with it, by time and place (J-07).
 
 A solver of pose goals, such as `refine`, is given position and orientation; any other one the
-positions, and how far the end's orientation differs is told by `orientation_error`.
+positions, and its end joint takes the orientations over as far as `end_orientation` and its limits
+let it. How far the end's orientation differs is told by `orientation_error`.
 """
 
 from collections.abc import Mapping
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from limbik.core.chain import AXES, Chain
 from limbik.core.errors import Fault, InputError
 from limbik.core.posegoals import PoseBatch, PoseSolution
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
@@ -158,7 +159,8 @@ def _solved(
 ) -> tuple[Solution, float]:
     """Return the solution of all samples and the distance that counts as reached [length]."""
     if isinstance(solver, Solver):
-        found = solver.follow(samples.positions, continuity=continuity)
+        turns = matrix_to_hpb(samples.rotations) if solver.settings.end_orientation else None
+        found = solver.follow(samples.positions, continuity=continuity, goal_turns=turns)
         return found, solver.settings.tolerance
     near = None if continuity is None else continuity.angles
     posed = solver.solve_poses(samples.positions, samples.rotations, True, near)

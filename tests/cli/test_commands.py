@@ -193,6 +193,7 @@ def test_plugins_as_json_has_ranges_defaults_and_units(run: Run) -> None:
         "root_control",
         "bank_suppression",
         "finish",
+        "limit",
         "solver",
     ]
     assert (angle["default"], angle["ge"], angle["le"], angle["unit"]) == (

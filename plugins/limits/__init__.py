@@ -1,0 +1,1 @@
+"""Limits of joints that are no ranges of heading, pitch and bank."""
