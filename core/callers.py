@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from limbik.core.compiler import invoker
 from limbik.core.jit import entry
-from limbik.core.kernels.own import LIMIT as LIMIT_COLUMN
+from limbik.core.kernels.own import ANGLES, STEP
 from limbik.core.slots import (
     BANK_SUPPRESSION,
     BEND_VECTOR,
@@ -135,4 +135,5 @@ def call_limit(address: int, angles: Array, params_array: Array, margin: Array) 
 def call_limit_task(address: int, task: int, row: Array) -> None:
     """Let a task be carried out on a joint with a limit of its own; `row` is IN/OUT."""
     if not _limit_task(address, (task, row, row)):
-        row[:LIMIT_COLUMN] = nan
+        # Number by number: an assignment to a slice takes a second to compile.
+        row[ANGLES], row[STEP] = nan, nan

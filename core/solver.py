@@ -61,7 +61,7 @@ class Solver:
         registry: Registry | None = None,
         **options: Any,
     ) -> None:
-        given = Settings() if settings is None else settings
+        given = settings or Settings()
         if options:
             given = Settings(**{**given.model_dump(exclude_unset=True), **options})
         self._check_fit(chain, given)
@@ -353,8 +353,7 @@ class Solver:
 
     def _rows(self, goals: Array, turns: ArrayLike | None) -> Array:
         """Return what the kernel takes for each goal: its position, and its turn if it has one."""
-        goals = self._goals(goals)
-        return goals if turns is None else with_turns(goals, turns)
+        return self._goals(goals) if turns is None else with_turns(self._goals(goals), turns)
 
     def _memory(self, continuity: Continuity | None) -> Array:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
