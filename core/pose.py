@@ -1,10 +1,13 @@
 """Forward kinematics over arrays of poses (000 §4); plain numpy, any number of leading axes."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.chain import Chain
 from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.solution import Stage
 
 
 def forward_kinematics(chain: Chain, angles: ArrayLike) -> tuple[Array, Array]:
@@ -35,3 +38,15 @@ def forward_kinematics(chain: Chain, angles: ArrayLike) -> tuple[Array, Array]:
         positions[..., joint, :] = origin
         rotations[..., joint, :, :] = turned
     return positions, rotations
+
+
+def stages_of(chain: Chain, names: Sequence[str], angles: Array) -> tuple[Stage, ...]:
+    """Give the poses of a trace their names and positions.
+
+    Args:
+        chain: Chain of n joints.
+        names: At least one a pose.
+        angles: HPB, (t, n, 3) [rad].
+    """
+    positions, _ = forward_kinematics(chain, angles)
+    return tuple(Stage(*parts) for parts in zip(names, angles, positions, strict=False))

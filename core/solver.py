@@ -17,7 +17,7 @@ from limbik.core.errors import PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
 from limbik.core.jointlimits import bound_limits
-from limbik.core.pose import forward_kinematics
+from limbik.core.pose import stages_of
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
@@ -265,7 +265,7 @@ class Solver:
             bend_vector=out.numbers[0, 3:6],
             bend_angle=numbers[6],
             continuity=Continuity(memory),
-            trace=self._stages(out.trace[:count], int(numbers[0])) if trace else None,
+            trace=self._named(out.trace[:count], int(numbers[0])) if trace else None,
         )
 
     def _solve_rows(
@@ -297,6 +297,10 @@ class Solver:
         out = Arrays(len(rows), len(self.chain), 0, self._columns)
         self._run(rows, self._offsets(fk_offsets), memory, True, out)
         return self._many(rows, out, Continuity(memory))
+
+    def _named(self, angles: Array, rounds: int) -> tuple[Stage, ...]:
+        names = [*self._early_stages, *(f"round {k + 1}" for k in range(rounds)), *_LATE_STAGES]
+        return stages_of(self.chain, names, angles)
 
     @property
     def _columns(self) -> int:
@@ -384,15 +388,6 @@ class Solver:
             bend_vector=out.numbers[:, 3:6],
             bend_angle=out.numbers[:, 6],
             continuity=continuity,
-        )
-
-    def _stages(self, angles: Array, iterations: int) -> tuple[Stage, ...]:
-        rounds = (f"round {k + 1}" for k in range(max(iterations, 0)))
-        names = [*self._early_stages, *rounds, *_LATE_STAGES]
-        positions, _ = forward_kinematics(self.chain, angles)
-        return tuple(
-            Stage(name, pose, places)
-            for name, pose, places in zip(names, angles, positions, strict=False)
         )
 
 
