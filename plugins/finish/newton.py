@@ -8,8 +8,9 @@ follow in a fixed order:
   a plane buckles out of it so, always to the same side.
 * Other folds are tried: the mirrored one, the ranges' middles, then starts spread over the ranges.
   The first that reaches the goal is the answer; one that does not only if it is nearer by far.
-* What was found settles next to the CCD pose, so that goals near each other get
-  poses near each other, whichever start led there.
+* In its own fold the pose settles next to the CCD pose, so that goals near each other get poses
+  near each other. Another fold does not settle: it lies on the far side of limits, where the way
+  to the CCD pose leads from one neighbour here and from the next there.
 """
 
 from collections.abc import Iterable
@@ -47,9 +48,10 @@ LEAST_RETRIES = 4
 OUT_RETRIES = 40  # for goals that no fold reaches, limits or not
 NEARER_BY_FAR = 0.007  # share of the length by which another fold that misses too must be nearer
 NEARER = 1e-5  # the same for the fold it is in
-COARSE = 1e-3
 THOROUGH = 1e-9  # a step that gains a smaller share of the distance is the last
-IMPATIENT = 0.02  # the same on the way from a start that may lead nowhere
+COARSE = (
+    1e-3  # the same on the way from a start that may lead nowhere; more cuts folds off at random
+)
 
 
 class Fold(IntEnum):
@@ -136,7 +138,7 @@ def _buckle(
 ) -> float:
     """Leave a pose from which no axis alone leads nearer; return the distance of what is BEST."""
     off_home(chain, scratch)
-    distance = descend(goal, aimed, steps, IMPATIENT, chain, scratch)
+    distance = descend(goal, aimed, steps, THOROUGH, chain, scratch)
     if distance < tolerance or distance < nearest - NEARER * chain.length:
         copy_columns(ANGLES, BEST, scratch)
         return _settled(goal, aimed, distance, steps, chain, scratch)
@@ -163,21 +165,26 @@ def _search(
     Returns:
         The least distance found [length].
     """
-    found = nearest
+    found, home = nearest, True
     for attempt in range(retries):
         other_fold(attempt, chain, scratch)
         for _ in range(2):
             sweep(goal, chain, scratch)
-        distance = descend(goal, aimed, params.steps, IMPATIENT, chain, scratch)
+        distance = descend(goal, aimed, params.steps, COARSE, chain, scratch)
         found = min(found, distance)
         if params.fold == Fold.ANY and (
             distance < tolerance or distance < nearest - NEARER_BY_FAR * chain.length
         ):
-            nearest = distance
+            nearest, home = distance, False
             copy_columns(ANGLES, BEST, scratch)
         if found < tolerance:
             break
-    return min(found, _settled(goal, aimed, nearest, params.steps, chain, scratch))
+    if home:
+        return min(found, _settled(goal, aimed, nearest, params.steps, chain, scratch))
+    copy_columns(BEST, ANGLES, scratch)
+    nearest = descend(goal, aimed, params.steps, THOROUGH, chain, scratch)
+    copy_columns(ANGLES, BEST, scratch)
+    return min(found, nearest)
 
 
 @kernel
