@@ -23,6 +23,7 @@ from limbik.plugins.commands.plugins import plugins
 from limbik.plugins.commands.schema import schema
 from limbik.plugins.commands.solve import solve
 from limbik.plugins.commands.trajectory import trajectory
+from limbik.plugins.commands.view import view
 
 app = typer.Typer(
     name="limbik",
@@ -36,6 +37,7 @@ app = typer.Typer(
 for command in (
     solve,
     compare,
+    view,
     trajectory,
     bake,
     inspect,

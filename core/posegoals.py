@@ -97,6 +97,11 @@ class WholeSolver:
         self.chain = chain
         self._batch = prepare(bound, chain, settings)
 
+    @property
+    def turns_end(self) -> bool:
+        """Whether it follows a goal's orientation."""
+        return isinstance(self._batch, PoseBatch)
+
     def moved(self, position: Array, rotation: Array) -> "WholeSolver":
         """Return the solver for the chain with its base elsewhere."""
         return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)

@@ -95,7 +95,7 @@ def command(*arguments: str) -> list[str]:
 
 
 def run_program(
-    folder: Path, *arguments: str, timeout: float = 240.0
+    folder: Path, *arguments: str, timeout: float = 900.0
 ) -> subprocess.CompletedProcess[str]:
     """Run `limbik experiment` as a program in a folder."""
     return subprocess.run(

@@ -129,7 +129,7 @@ def test_a_cluster_gives_the_same_table_though_a_worker_is_killed(tmp_path: Path
                 time.sleep(0.01)
             assert run.poll() is None, "over before a worker could be killed"
             os.killpg(workers[0].pid, signal.SIGKILL)
-            _, told = run.communicate(timeout=240)
+            _, told = run.communicate(timeout=900)
         finally:
             run.kill()
             run.wait()

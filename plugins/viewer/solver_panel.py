@@ -1,0 +1,160 @@
+"""Solver, strategies, options and FK: widgets made from the models, remade as choices change."""
+
+from typing import Any
+
+import numpy as np
+
+from limbik.core.slots import SOLVER
+from limbik.plugins.viewer.controls import Control, value_at
+from limbik.plugins.viewer.page import Page
+from limbik.plugins.viewer.session import Shown
+from limbik.plugins.viewer.setup import Setup
+from limbik.plugins.viewer.widgets import add_control
+
+NOBODY = "nobody"
+LAST = 100.0  # place in its tab
+OF_FK = ("ik", "fk_strength", "fk_mix")
+HEADING_PITCH_BANK = ("heading", "pitch", "bank")
+
+
+class SolverPanel:
+    """Widgets for how the chain is solved.
+
+    Args:
+        page: What it is about.
+        solver, options, fk: Tabs they go into.
+    """
+
+    def __init__(self, page: Page, solver: Any, options: Any, fk: Any) -> None:
+        self._page, self._session, self._gui = page, page.session, page.server.gui
+        self._tabs = {"solver": solver, "options": options, "fk": fk}
+        self._folders: dict[str, Any] = {}
+        self.rebuild()
+
+    @property
+    def _setup(self) -> Setup:
+        return self._session.chain.setup
+
+    def update(self, shown: dict[str, Shown], dragged: bool) -> None:
+        """Nothing here changes by itself."""
+
+    def _try(self, make: Any) -> bool:
+        """Change to the setup that is made, if it can be made."""
+        return self._page.act(
+            lambda: self._session.change(self._session.chain.name, make(self._setup))
+        )
+
+    def _folder(self, tab: str, name: str, order: float) -> Any:
+        """Return an empty folder in the place of the one of this name."""
+        before = self._folders.pop(name, None)
+        if before is not None:
+            before.remove()
+        with self._tabs[tab]:
+            self._folders[name] = self._gui.add_folder(name, order=order)
+        return self._folders[name]
+
+    def rebuild(self) -> None:
+        """Make all widgets anew, for the chain that is selected."""
+        self._joint = self._setup.chain.names[0]
+        with self._folder("solver", "side by side", LAST):
+            fit, why = self._setup.solvers
+            text = "; ".join(f"not {name}: {reason}" for name, reason in why.items())
+            rival = Control(("with",), "choice", choices=(NOBODY, *fit), text=text)
+            add_control(self._gui, rival, NOBODY, self._compare)
+            apart = Control(("apart",), "float", 0.0, 2.0, text="in lengths of the chain")
+            add_control(self._gui, apart, self._page.apart, self._set_apart)
+        self._build_all()
+
+    def _build_all(self) -> None:
+        slots = (SOLVER.name, *self._setup.slots)
+        for name in [name for name in self._folders if name.startswith("slot ")]:
+            self._folders.pop(name).remove()
+        for order, slot in enumerate(slots):
+            self._build_slot(slot, order)
+        self._build_options()
+        self._build_fk()
+
+    def _build_slot(self, slot: str, order: float) -> None:
+        gui, chosen = self._gui, self._setup.chosen(slot)
+        name = chosen["use"]
+        names = self._setup.solvers[0] if slot == SOLVER.name else self._setup.offered(slot)
+        with self._tabs["solver"]:
+            folder = gui.add_folder(slot.replace("_", " "), order=order)
+        self._folders[f"slot {slot}"] = folder
+        with folder:
+            use = Control(("use",), "choice", choices=tuple(names), text=self._about(slot, name))
+
+            def choose(control: Control, value: Any) -> bool:
+                with self._session.lock:
+                    taken = self._try(
+                        lambda setup: setup.with_strategy(slot, setup.fresh(slot, value))
+                    )
+                    if taken:
+                        self._build_all()
+                return taken
+
+            add_control(gui, use, name, choose)
+            for control in self._setup.parameters(slot, name):
+
+                def tune(control: Control, value: Any) -> bool:
+                    return self._try(
+                        lambda setup: setup.with_strategy(
+                            slot, {**setup.chosen(slot), control.path[0]: value}
+                        )
+                    )
+
+                add_control(gui, control, value_at(chosen, control.path), tune)
+
+    def _about(self, slot: str, name: str) -> str:
+        known = self._setup.registry.strategies(slot)
+        return known[name].strategy.description if name in known else ""
+
+    def _build_options(self) -> None:
+        gui, values = self._gui, self._setup.settings.model_dump()
+        with self._folder("options", "options of the solve", 0.0):
+            for control in self._setup.options:
+                held = value_at(values, control.path)
+                if control.path[0] in OF_FK or (held is None and control.kind != "switch"):
+                    continue
+                add_control(gui, control, held, self._set_option)
+
+    def _set_option(self, control: Control, value: Any) -> bool:
+        with self._session.lock:
+            taken = self._try(lambda setup: setup.with_option(control.path, value))
+            if taken and control.kind == "switch":
+                self._build_options()
+        return taken
+
+    def _build_fk(self) -> None:
+        gui, values = self._gui, self._setup.settings.model_dump()
+        with self._folder("fk", "forward kinematics", 0.0):
+            for control in self._setup.options:
+                if control.path[0] in OF_FK:
+                    add_control(gui, control, value_at(values, control.path), self._set_option)
+            names = self._setup.chain.names
+            joint = Control(("joint",), "choice", choices=names, text="whose FK offsets are below")
+            add_control(gui, joint, self._joint, self._choose_joint)
+            turn = np.degrees(self._setup.fk[names.index(self._joint)])
+            for axis, angle in zip(HEADING_PITCH_BANK, turn.tolist(), strict=True):
+                text = "FK offset from the rest pose [deg]"
+                control = Control((axis,), "float", -180.0, 180.0, text=text)
+                add_control(gui, control, angle, self._turn)
+
+    def _choose_joint(self, control: Control, value: Any) -> bool:
+        with self._session.lock:
+            self._joint = value
+            self._build_fk()
+        return True
+
+    def _turn(self, control: Control, value: Any) -> bool:
+        at = self._setup.chain.names.index(self._joint)
+        turn = self._setup.fk[at].copy()
+        turn[HEADING_PITCH_BANK.index(control.path[0])] = np.radians(value)
+        return self._try(lambda setup: setup.with_fk(at, turn))
+
+    def _set_apart(self, control: Control, value: Any) -> bool:
+        self._page.apart = float(value)
+        return self._page.act(lambda: None)
+
+    def _compare(self, control: Control, value: Any) -> bool:
+        return self._page.act(lambda: self._session.compare(None if value == NOBODY else value))
