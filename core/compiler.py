@@ -36,6 +36,7 @@ _errors: Any = numba.core.errors
 _OPTIONS = {"nogil": True, "error_model": "numpy"}
 # LLVM's first level: the code is as fast as that of the third, and compiled a seventh sooner.
 _QUICK = type(_config.OPT)(1)
+_KERNELS = f"{__package__}.kernels."
 _LOCK = RLock()
 _COMPILED: dict[int, tuple[Any, Any]] = {}
 _NATIVE: dict[tuple[str, Strategy], tuple[int, Any]] = {}
@@ -181,7 +182,7 @@ def _compiled(function: Any) -> Any:
         own = sources.is_own(plain)
         inner = _njit(
             _nrt=isinstance(function, Entry) or not own,
-            forceinline=own and _takes_record(plain),
+            forceinline=_takes_record(plain),
             no_cpython_wrapper=True,
             no_cfunc_wrapper=True,
             **_OPTIONS,
@@ -192,7 +193,12 @@ def _compiled(function: Any) -> Any:
 
 
 def _takes_record(function: FunctionType) -> bool:
-    """Whether a function has a NamedTuple among its arguments, by its annotations."""
+    """Whether one of the solve's own kernels has a NamedTuple among its arguments, by annotation.
+
+    In strategies, whose larger kernels are called from many places, it only costs time to compile.
+    """
+    if not function.__module__.startswith(_KERNELS):
+        return False
     hints = (hint for name, hint in function.__annotations__.items() if name != "return")
     return any(hasattr(hint, "_fields") for hint in hints)
 

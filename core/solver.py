@@ -135,8 +135,10 @@ class Solver:
         if not isinstance(solve_rows, Entry):
             return solve_rows
         out = Arrays(1, len(self.chain), 0, self._columns)
+        # Strategies are but addresses here and compiled later: `limbik.core.warm` has time.
+        plugs = flat_plugs(self.chain, self.settings, {}, (None,) * len(self.chain))
         return solve_rows.direct(
-            *self._arguments(np.zeros((1, 3)), self._none, self._fresh, False, out)
+            *self._arguments(plugs, np.zeros((1, 3)), self._none, self._fresh, False, out)
         )
 
     @property
@@ -284,7 +286,7 @@ class Solver:
         if workers == 1:
             run(parts[0])
         else:
-            self._plugs, self._kernel  # noqa: B018 - compile once, before the threads start
+            self._kernel, self._plugs  # noqa: B018 - compile once, before the threads start
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(run, parts))
         return self._many(rows, out, None)
@@ -317,14 +319,15 @@ class Solver:
         )
 
     def _run(self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays) -> int:
-        return self._kernel(*self._arguments(goals, fk, memory, chained, out))
+        kernel = self._kernel
+        return kernel(*self._arguments(self._plugs, goals, fk, memory, chained, out))
 
     def _arguments(
-        self, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays
+        self, plugs: Plugs, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays
     ) -> tuple[Any, ...]:
         return (
             *self._fixed,
-            self._plugs,
+            plugs,
             goals,
             fk,
             memory,

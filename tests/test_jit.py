@@ -183,6 +183,15 @@ def test_only_the_cache_folders_used_last_stay(
     assert {path.name for path in tmp_path.iterdir()} == {f"{cache.PREFIX}0", f"{cache.PREFIX}1"}
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(not jit.COMPILES, reason="nothing is compiled")
+def test_warming_keeps_the_default_strategies_machine_code(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "limbik.core.warm"]
+    subprocess.run(command, check=True, env=os.environ | {"LIMBIK_CACHE": str(tmp_path)})
+    kept = {file.name.partition("_")[0] for file in tmp_path.rglob("*.nbi")}
+    assert kept == {"wrappers.initial", "wrappers.bend", "wrappers.finish"}
+
+
 def test_fingerprint_follows_helpers_constants_and_closures(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -13,10 +13,13 @@ AsJson = Annotated[bool, typer.Option("--json", help="Write one JSON object to s
 
 
 def announce_compiling() -> None:
-    """Say on stderr that the first solve will take long, when it will."""
+    """Say on stderr that the first solve will take long, when it will, and get help for it."""
     from limbik.core.jit import is_compiled_before
 
     if not is_compiled_before():
+        from limbik.core import warm
+
+        warm.start()
         typer.echo("limbik: compiling machine code, once for this version ...", err=True)
 
 

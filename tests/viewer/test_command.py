@@ -49,13 +49,17 @@ def test_a_scene_with_a_fault_is_no_reason_to_serve(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="sends a signal of POSIX")
 def test_it_serves_until_it_is_interrupted() -> None:
     pytest.importorskip("viser", reason="the extra 'view' is not installed")
-    process = subprocess.Popen(
-        limbik("view", str(CONFIGS / "arm.yaml"), "--port", "0"),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"PYTHONUNBUFFERED": "1"},
-    )
+    ours = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background
+    try:  # ignores Ctrl-C, and so would what it starts
+        process = subprocess.Popen(
+            limbik("view", str(CONFIGS / "arm.yaml"), "--port", "0"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        )
+    finally:
+        signal.signal(signal.SIGINT, ours)
     assert process.stdout is not None
     try:
         said = process.stdout.readline()
