@@ -174,8 +174,11 @@ def move_end(lengths: Array, reach: float, angles: Array) -> float:
 
 
 def even_weights(weights: Array) -> float:
-    """Return what to add to the weights: 1 where all are 0, since only their ratios count."""
+    """Return what to add to the weights: 1 where all are 0, since only their ratios count.
+
+    Numbers so small that their squares vanish count as 0.
+    """
     for bone in range(weights.shape[0]):
-        if weights[bone] != 0.0:
+        if abs(weights[bone]) > 1e-100:
             return 0.0
     return 1.0

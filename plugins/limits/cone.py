@@ -69,6 +69,11 @@ def cone(angles: Array, params: Cone, margin: Array) -> None:
     low, high = params.twist
     inner_bank = bank
     if high - low < FULL_TURN:
+        # By whole turns to where the range is: 180° may be its end at -180°.
+        if bank - high > low - (bank - 2.0 * pi):
+            bank -= 2.0 * pi
+        elif low - bank > (bank + 2.0 * pi) - high:
+            bank += 2.0 * pi
         inner_bank = nearest_in_range(bank, bank, low, high)
         past = abs(inner_bank - bank)
         if past > ROUNDING:

@@ -20,7 +20,7 @@ from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene
 from limbik.core.settings import ONLY_3D, Model, Settings
-from limbik.core.slots import SLOTS, SOLVER
+from limbik.core.slots import OPTIONS, SOLVER
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
 from limbik.core.solver import Solver
@@ -81,7 +81,7 @@ class Setup:
         """The slots of the present solver that take a strategy."""
         if self.choice["use"] not in OWN_SOLVERS:
             return ()
-        return ("initial_bend", "finish") if self.in_plane else tuple(SLOTS)
+        return ("initial_bend", "finish") if self.in_plane else tuple(OPTIONS)
 
     def offered(self, slot: str) -> list[str]:
         """Names of the strategies a slot of the present solver takes."""
