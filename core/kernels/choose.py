@@ -36,8 +36,8 @@ from limbik.core.kernels.rotation import (
     turn_about,
     unit,
     vector,
-    wrap_angle,
 )
+from limbik.core.kernels.spread import first_state, next_state, spread_angle
 from limbik.core.kernels.trace import record
 from limbik.core.rotation import Array
 
@@ -202,7 +202,7 @@ def _start(
 ) -> None:
     """Put the chain into the pose a candidate starts from."""
     n = body.offsets.shape[0]
-    state = number * 7919 + 1
+    state = first_state(number)
     for joint in range(n):
         angles = taken(pose.own[joint], FOUND)
         if number == 0:
@@ -212,10 +212,15 @@ def _start(
         elif number == SWIVELS + 1 or number == SWIVELS + 2 + joint:
             angles = _mirrored(joint, angles, pose)
         elif number > SWIVELS + 1 + n:
-            for axis in range(3):
-                state = (state * 1103515245 + 12345) % 2147483648
-                share = state / 2147483648.0
-                angles = _spread(joint, axis, share, angles, pose)
+            low, high = vector(pose.low, joint), vector(pose.high, joint)
+            heading = next_state(state)
+            pitch = next_state(heading)
+            state = next_state(pitch)
+            angles = (
+                spread_angle(heading, low[0], high[0]),
+                spread_angle(pitch, low[1], high[1]),
+                spread_angle(state, low[2], high[2]),
+            )
         set_angles(joint, clamp_angles(joint, angles, pose), pose)
     if 1 < number <= SWIVELS:
         _swivel(2.0 * pi * (number - 1) / SWIVELS, goal, body, options, pose)
@@ -229,18 +234,6 @@ def _mirrored(joint: int, angles: Vector, pose: Pose) -> Vector:
         low[0] + high[0] - angles[0] if high[0] < inf else -angles[0],
         low[1] + high[1] - angles[1] if high[1] < inf else -angles[1],
         low[2] + high[2] - angles[2] if high[2] < inf else -angles[2],
-    )
-
-
-@kernel
-def _spread(joint: int, axis: int, share: float, angles: Vector, pose: Pose) -> Vector:
-    """Return angles with one of them at a share of its range."""
-    low, high = pose.low[joint, axis], pose.high[joint, axis]
-    angle = low + share * (high - low) if high < inf else wrap_angle(2.0 * pi * share)
-    return (
-        angle if axis == 0 else angles[0],
-        angle if axis == 1 else angles[1],
-        angle if axis == 2 else angles[2],
     )
 
 

@@ -13,6 +13,7 @@ from limbik.core.kernels.rotation import (
     Vector,
     add,
     clamp,
+    clamp_vector,
     hpb_to_matrix,
     matrix,
     matrix_to_hpb,
@@ -105,11 +106,7 @@ def renew_angles(joint: int, pose: Pose) -> None:
 @kernel
 def clamp_angles(joint: int, angles: Vector, pose: Pose) -> Vector:
     """Return angles [rad] pulled into a joint's effective limits."""
-    return (
-        clamp(angles[0], pose.low[joint, 0], pose.high[joint, 0]),
-        clamp(angles[1], pose.low[joint, 1], pose.high[joint, 1]),
-        clamp(angles[2], pose.low[joint, 2], pose.high[joint, 2]),
-    )
+    return clamp_vector(angles, vector(pose.low, joint), vector(pose.high, joint))
 
 
 @kernel

@@ -65,6 +65,16 @@ def clamp(value: float, low: float, high: float) -> float:
 
 
 @kernel
+def clamp_vector(angles: Vector, low: Vector, high: Vector) -> Vector:
+    """Return a triple of angles pulled into ranges."""
+    return (
+        clamp(angles[0], low[0], high[0]),
+        clamp(angles[1], low[1], high[1]),
+        clamp(angles[2], low[2], high[2]),
+    )
+
+
+@kernel
 def trig(angle: float) -> Trig:
     """Return an angle [rad] with its sine and cosine."""
     return angle, sin(angle), cos(angle)

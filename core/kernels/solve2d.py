@@ -44,6 +44,7 @@ from limbik.core.kernels.solve3d import (
     ITERATIONS,
     STATUS,
     copy_rows,
+    write_pose,
 )
 from limbik.core.rotation import Array
 
@@ -101,10 +102,7 @@ def solve_plane_goals(
         stages = _solve(
             goal, pole, body, options, planar, plugs, fk, memory, pose, flat, numbers[row], trace
         )
-        copy_rows(pose.angles, angles[row])
-        copy_rows(pose.positions, positions[row])
-        for joint in range(n):
-            copy_rows(pose.world[joint], rotations[row, joint])
+        write_pose(pose, angles[row], positions[row], rotations[row])
     return stages
 
 

@@ -108,10 +108,7 @@ def solve_goals(
             stages = record(stages, pose, trace)
         settle_pose(body, options, fk, memory, pose)
         write_numbers(goal, led, failed, options, pose, numbers[row])
-        copy_rows(pose.angles, angles[row])
-        copy_rows(pose.positions, positions[row])
-        for joint in range(pose.world.shape[0]):
-            copy_rows(pose.world[joint], rotations[row, joint])
+        write_pose(pose, angles[row], positions[row], rotations[row])
     return stages
 
 
@@ -121,6 +118,15 @@ def copy_rows(source: Array, out: Array) -> None:
     for row in range(out.shape[0]):
         for place_in_row in range(out.shape[1]):
             out[row, place_in_row] = source[row, place_in_row]
+
+
+@kernel
+def write_pose(pose: Pose, angles: Array, positions: Array, rotations: Array) -> None:
+    """Write the angles (n, 3), positions (n, 3) and world rotations (n, 3, 3) of a solved pose."""
+    copy_rows(pose.angles, angles)
+    copy_rows(pose.positions, positions)
+    for joint in range(pose.world.shape[0]):
+        copy_rows(pose.world[joint], rotations[joint])
 
 
 class Led(NamedTuple):

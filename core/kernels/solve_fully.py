@@ -12,7 +12,14 @@ from limbik.core.kernels.layout import Body, Choice, Options, Plugs
 from limbik.core.kernels.limit import load_own
 from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import norm, subtract, vector
-from limbik.core.kernels.solve3d import FAILED, copy_rows, lead, settle_pose, write_numbers
+from limbik.core.kernels.solve3d import (
+    FAILED,
+    copy_rows,
+    lead,
+    settle_pose,
+    write_numbers,
+    write_pose,
+)
 from limbik.core.rotation import Array
 
 
@@ -60,8 +67,5 @@ def solve_fully(
                 orient_end(turn, choice.end_orientation, body, pose)
         settle_pose(body, options, fk, memory, pose)
         write_numbers(goal, led, failed, options, pose, numbers[row])
-        copy_rows(pose.angles, angles[row])
-        copy_rows(pose.positions, positions[row])
-        for joint in range(pose.world.shape[0]):
-            copy_rows(pose.world[joint], rotations[row, joint])
+        write_pose(pose, angles[row], positions[row], rotations[row])
     return stages

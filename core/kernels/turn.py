@@ -19,6 +19,7 @@ from limbik.core.kernels.rotation import (
     add,
     axis_trig_to_matrix,
     clamp,
+    clamp_vector,
     cross,
     dot,
     has_direction,
@@ -242,16 +243,6 @@ def _turn_limited(
 def angle_gap(a: Vector, b: Vector) -> float:
     """Return the largest difference of two triples of angles [rad]."""
     return max(abs(a[0] - b[0]), abs(a[1] - b[1]), abs(a[2] - b[2]))
-
-
-@kernel
-def clamp_vector(angles: Vector, low: Vector, high: Vector) -> Vector:
-    """Return a triple of angles pulled into ranges."""
-    return (
-        clamp(angles[0], low[0], high[0]),
-        clamp(angles[1], low[1], high[1]),
-        clamp(angles[2], low[2], high[2]),
-    )
 
 
 @kernel

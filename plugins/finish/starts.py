@@ -1,9 +1,9 @@
 """Where a descent starts again when limits have stopped it."""
 
-from math import inf, pi
+from math import inf
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.rotation import wrap_angle
+from limbik.core.kernels.spread import first_state, next_state, spread_angle
 from limbik.core.rotation import Array
 from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage, pull_inside
 
@@ -31,19 +31,18 @@ def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
         chain: The chain.
         scratch: (n, WIDTH).
     """
-    state = number * 7919 + 1
+    state = first_state(number)
     for joint in range(chain.offsets.shape[0]):
         for axis in range(3):
             low, high = chain.low[joint, axis], chain.high[joint, axis]
             angle = scratch[joint, HOME + axis]
-            state = (state * 1103515245 + 12345) % 2147483648
-            share = state / 2147483648.0
+            state = next_state(state)
             limited = high < inf
             if number == 1:
                 angle = low + high - angle if limited else angle
             elif number == 2:
                 angle = 0.5 * (low + high) if limited else angle
             elif number > 2:
-                angle = low + share * (high - low) if limited else wrap_angle(2.0 * pi * share)
+                angle = spread_angle(state, low, high)
             scratch[joint, ANGLES + axis] = angle
         pull_inside(ANGLES, joint, scratch)

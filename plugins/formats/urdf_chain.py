@@ -38,19 +38,24 @@ _WHY_NOT = {
 }
 
 
+RobotFile = Annotated[str, Field(min_length=1, description="path relative to the scene")]
+Scale = Annotated[
+    float, Field(gt=0.0, le=1e6, description="scene lengths a metre of the robot [-]")
+]
+RestValues = Annotated[
+    dict[str, Angle],
+    Field(default_factory=dict, description="initial values of hinges [deg], else 0"),
+]
+
+
 class UrdfModel(Model):
     """A chain of a robot."""
 
-    urdf: Annotated[str, Field(min_length=1, description="path relative to the scene")]
+    urdf: RobotFile
     base: Annotated[str, Field(min_length=1, description="link the chain starts from")]
     end: Annotated[str, Field(min_length=1, description="link that goes to the goals")]
-    scale: Annotated[
-        float, Field(gt=0.0, le=1e6, description="scene lengths a metre of the robot [-]")
-    ] = 1.0
-    rest: Annotated[
-        dict[str, Angle],
-        Field(default_factory=dict, description="initial values of hinges [deg], else 0"),
-    ]
+    scale: Scale = 1.0
+    rest: RestValues
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,36 +12,29 @@ that slide or copy another joint keep their zero. The root link's frame is limbi
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Motion
 from limbik.core.frames import Z_UP, rpy_to_matrix, turn_about
 from limbik.core.rotation import Array
-from limbik.core.scenemodel import Angle
 from limbik.core.settings import Model
 from limbik.core.skeleton import STILL, Skeleton
 from limbik.core.wording import near_match
 from limbik.plugins.formats.joining import ModelJoint
 from limbik.plugins.formats.limbs import ModelLimb, model_limb
 from limbik.plugins.formats.urdf import Robot, UrdfJoint, read_urdf
-from limbik.plugins.formats.urdf_chain import refusals, rest_value
+from limbik.plugins.formats.urdf_chain import RestValues, RobotFile, Scale, refusals, rest_value
 
 
 class UrdfSkeletonModel(Model):
     """A whole robot."""
 
-    urdf: Annotated[str, Field(min_length=1, description="path relative to the scene")]
-    scale: Annotated[
-        float, Field(gt=0.0, le=1e6, description="scene lengths a metre of the robot [-]")
-    ] = 1.0
-    rest: Annotated[
-        dict[str, Angle],
-        Field(default_factory=dict, description="initial values of hinges [deg], else 0"),
-    ]
+    urdf: RobotFile
+    scale: Scale = 1.0
+    rest: RestValues
 
 
 @dataclass(frozen=True, eq=False)
