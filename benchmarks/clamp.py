@@ -16,42 +16,12 @@ from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.solver import Solver
+from limbik.tests.kinds import leg
+from limbik.tests.limbs import arm
 
 TOLERANCE = 0.01
 ROUNDS = ((0.1, 20), (0.1, 100), (1.0, 20), (1.0, 100))
 FIXED = (0.0, 0.0)
-
-
-def arm() -> Chain:
-    """Return a human arm, 74 long: shoulder of three axes, elbow, wrist."""
-    return Chain(
-        [
-            Joint.degrees("shoulder", heading=(-130, 60), pitch=(-85, 85), bank=(-90, 90)),
-            Joint.degrees("elbow", (0, 0, 30), heading=FIXED, pitch=(0, 145), bank=(-80, 80)),
-            Joint.degrees("wrist", (0, 0, 26), heading=(-30, 30), pitch=(-70, 70), bank=FIXED),
-            Joint.degrees("hand", (0, 0, 18), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
-
-
-def leg() -> Chain:
-    """Return a human leg, 98 long: hip of three axes, knee, ankle."""
-    hip = Joint.degrees(
-        "hip",
-        (10, 0, 0),
-        frozen=(0, -90, 0),
-        heading=(-40, 40),
-        pitch=(-30, 110),
-        bank=(-45, 45),
-    )
-    return Chain(
-        [
-            hip,
-            Joint.degrees("knee", (0, 0, 42), heading=FIXED, pitch=(-145, 0), bank=FIXED),
-            Joint.degrees("ankle", (0, 0, 40), heading=FIXED, pitch=(-40, 50), bank=(-20, 20)),
-            Joint.degrees("foot", (0, 0, 16), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
 
 
 def six_hinges() -> Chain:

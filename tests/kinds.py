@@ -1,6 +1,7 @@
 """Kinds of chains a solver must master: free, limited, hinged, planar, short and long."""
 
 from limbik.core.chain import Chain, Joint
+from limbik.tests.limbs import arm
 
 FIXED = (0.0, 0.0)
 
@@ -8,18 +9,6 @@ FIXED = (0.0, 0.0)
 def ball(joints: int) -> Chain:
     """Free joints, bones of 1."""
     return Chain([Joint(f"j{i}", (0, 0, 1.0 if i else 0.0)) for i in range(joints)])
-
-
-def arm() -> Chain:
-    """A human arm, 74 long."""
-    return Chain(
-        [
-            Joint.degrees("shoulder", heading=(-130, 60), pitch=(-85, 85), bank=(-90, 90)),
-            Joint.degrees("elbow", (0, 0, 30), heading=FIXED, pitch=(0, 145), bank=(-80, 80)),
-            Joint.degrees("wrist", (0, 0, 26), heading=(-30, 30), pitch=(-70, 70), bank=FIXED),
-            Joint.degrees("hand", (0, 0, 18), heading=FIXED, pitch=FIXED, bank=FIXED),
-        ]
-    )
 
 
 def leg() -> Chain:

@@ -3,7 +3,12 @@
 The strategies mix uniform numbers with nearly degenerate and exactly degenerate ones.
 """
 
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -242,3 +247,29 @@ OPTIONS = st.fixed_dictionaries(
         "limit_ease": st.floats(0.0, 90.0),
     },
 )
+
+POSE_ARM = """\
+limbik: 1
+solver: refine
+chain:
+  joints:
+    - {name: shoulder, heading: [-120, 120], pitch: [-90, 90], bank: [-90, 90]}
+    - {name: elbow, offset: [0, 0, 3], heading: 0, pitch: [0, 150], bank: 0, rest: [0, 60, 0]}
+    - {name: wrist, offset: [0, 0, 3], heading: [-80, 80], pitch: [-80, 80], bank: [-80, 80]}
+    - {name: hand, offset: [0, 0, 1], heading: 0, pitch: 0, bank: 0}
+"""
+"""Head of a scene: an arm that takes position and orientation."""
+
+
+def interpreted(code: str) -> Any:
+    """Run code without the compiler; return what it prints as JSON."""
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)

@@ -1,17 +1,16 @@
 """A catalogue of malformed scenes with several chains: each gives exactly these faults."""
 
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from limbik.cli import main
 from limbik.core.bodyscene import body_from
 from limbik.core.errors import SceneError
 from limbik.core.registry import Registry
 from limbik.core.yamlfile import read_yaml
+from limbik.tests.refusals import assert_check_refuses
 
 SOUND = """\
 limbik: 1
@@ -67,14 +66,4 @@ def test_the_command_line_ends_with_2_and_shows_the_first_fault(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     scene = tmp_path / "body.yaml"
-    scene.write_text(spoilt(entry), encoding="utf-8")
-    monkeypatch.setattr(sys, "argv", ["limbik", "check", str(scene)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    shown = capsys.readouterr()
-
-    assert left.value.code == 2
-    assert shown.err.splitlines()[0].startswith(
-        f"{scene}:{entry['faults'][0].split(' ')[0]} error["
-    )
-    assert (shown.out, "Traceback" in shown.err) == ("", False)
+    assert_check_refuses(scene, spoilt(entry), entry["faults"][0], capsys, monkeypatch)

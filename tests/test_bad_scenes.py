@@ -12,6 +12,7 @@ from limbik.core.errors import SceneError
 from limbik.core.registry import Registry
 from limbik.core.scene import scene_from
 from limbik.core.yamlfile import read_yaml
+from limbik.tests.refusals import assert_check_refuses
 
 SOUND = """\
 limbik: 1
@@ -110,17 +111,7 @@ def test_the_command_line_ends_with_2_and_points_at_the_first_fault(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     scene = tmp_path / "scene.yaml"
-    scene.write_text(spoilt(entry), encoding="utf-8")
-    monkeypatch.setattr(sys, "argv", ["limbik", "check", str(scene)])
-    with pytest.raises(SystemExit) as left:
-        main()
-    shown = capsys.readouterr()
-
-    place = entry["faults"][0].split(" ")[0]
-    assert left.value.code == 2
-    assert shown.err.startswith(f"{scene}:{place} error[")
-    assert shown.out == ""
-    assert "Traceback" not in shown.err
+    assert_check_refuses(scene, spoilt(entry), entry["faults"][0], capsys, monkeypatch)
 
 
 def test_a_fault_shows_its_line_with_a_mark_under_the_column(

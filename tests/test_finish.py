@@ -6,8 +6,8 @@ import pytest
 from limbik.core.pose import forward_kinematics
 from limbik.core.solution import Status
 from limbik.core.solver import Solver
-from limbik.tests.kinds import CHAINS, arm, ball, leg
-from limbik.tests.limbs import reachable
+from limbik.tests.kinds import CHAINS, ball, leg
+from limbik.tests.limbs import arm, reachable
 
 
 @pytest.mark.parametrize("name", CHAINS)

@@ -17,6 +17,7 @@ from limbik.plugins.output.servo import Profile, Servo
 from limbik.plugins.output.servo_motion import servo_motion
 from limbik.plugins.paths.scene_program import scene_trajectory
 from limbik.plugins.solvers.refine.solver import PoseSolver
+from limbik.tests.limbs import POSE_ARM
 from limbik.trajectory import KeyPoint, Limits, Line, Samples, Turn, joint_motion, plan
 
 pytest.importorskip("scipy")
@@ -108,15 +109,9 @@ def test_a_change_of_fold_is_a_failure_of_its_own() -> None:
     np.testing.assert_allclose(motion.angles[0], begin, atol=1e-5)
 
 
-HEAD = """\
-limbik: 1
-solver: refine
-chain:
-  joints:
-    - {name: shoulder, heading: [-120, 120], pitch: [-90, 90], bank: [-90, 90]}
-    - {name: elbow, offset: [0, 0, 3], heading: 0, pitch: [0, 150], bank: 0, rest: [0, 60, 0]}
-    - {name: wrist, offset: [0, 0, 3], heading: [-80, 80], pitch: [-80, 80], bank: [-80, 80]}
-    - {name: hand, offset: [0, 0, 1], heading: 0, pitch: 0, bank: 0}
+HEAD = (
+    POSE_ARM
+    + """\
 trajectory:
   limits: {speed: 1, acceleration: 2}
   points:
@@ -125,6 +120,7 @@ trajectory:
   start: a
   program: [{line: {to: b}}]
 """
+)
 
 
 def planned(text: str) -> Samples:

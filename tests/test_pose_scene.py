@@ -15,20 +15,16 @@ from limbik.core.rotation import hpb_to_matrix
 from limbik.core.scene import Scene, read_scene, scene_from
 from limbik.core.solving import solve_scene
 from limbik.core.yamlfile import read_yaml
+from limbik.tests.limbs import POSE_ARM
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 REGISTRY = Registry(third_party=False)
-HEAD = """\
-limbik: 1
-solver: refine
-chain:
-  joints:
-    - {name: shoulder, heading: [-120, 120], pitch: [-90, 90], bank: [-90, 90]}
-    - {name: elbow, offset: [0, 0, 3], heading: 0, pitch: [0, 150], bank: 0, rest: [0, 60, 0]}
-    - {name: wrist, offset: [0, 0, 3], heading: [-80, 80], pitch: [-80, 80], bank: [-80, 80]}
-    - {name: hand, offset: [0, 0, 1], heading: 0, pitch: 0, bank: 0}
+HEAD = (
+    POSE_ARM
+    + """\
 options: {tolerance: 0.000001}
 """
+)
 POSE = "position: [0.5, 3, 4]"
 TURN = hpb_to_matrix(np.radians([10.0, 20.0, -30.0]))
 

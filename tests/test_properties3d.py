@@ -1,10 +1,5 @@
 """What holds for every chain, goal and option of the 3D solver."""
 
-import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,6 +23,7 @@ from limbik.tests.limbs import (
     ball,
     chains,
     goals,
+    interpreted,
     reachable,
     solver,
 )
@@ -300,14 +296,5 @@ def sample_poses() -> list[Any]:
 
 def test_the_interpreter_gives_what_compiled_code_gives() -> None:
     """With `NUMBA_DISABLE_JIT=1` the kernels are plain Python: same poses to 1e-12 rad."""
-    done = subprocess.run(
-        [sys.executable, "-c", SAMPLE],
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
-        cwd=Path(__file__).parent,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    for plain, compiled in zip(json.loads(done.stdout), sample_poses(), strict=True):
+    for plain, compiled in zip(interpreted(SAMPLE), sample_poses(), strict=True):
         np.testing.assert_allclose(plain, compiled, rtol=0.0, atol=1e-12)

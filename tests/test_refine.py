@@ -1,9 +1,5 @@
 """Pose goals by `refine`: reached within limits, the same each time, and truthful where not."""
 
-import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,6 +26,7 @@ from limbik.plugins.solvers.refine.place import (
     write_motions,
 )
 from limbik.plugins.solvers.refine.solver import PoseSolver
+from limbik.tests.limbs import interpreted
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 EXACT = 1e-6
@@ -110,16 +107,7 @@ def sample_poses() -> list[Any]:
 
 
 def test_the_interpreter_gives_what_compiled_code_gives() -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", SAMPLE],
-        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
-        cwd=Path(__file__).parent,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    angles, status = json.loads(done.stdout)
+    angles, status = interpreted(SAMPLE)
     here = sample_poses()
     np.testing.assert_allclose(angles, here[0], atol=1e-6)
     assert status == here[1]

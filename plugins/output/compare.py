@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from limbik.core.slots import SOLVER
 from limbik.core.solution import AT_LIMIT, Solution
 from limbik.core.solving import solve_scene
 from limbik.core.whole import OWN_SOLVERS, prepare
-from limbik.plugins.output.plot import FAINT, INK, LIMIT, LOOK, PAPER
+from limbik.plugins.output.plot import FAINT, INK, LIMIT, LOOK, PAPER, picture
 from limbik.plugins.output.records import solve_record, status_label
 
 if TYPE_CHECKING:
@@ -102,11 +101,7 @@ def draw_comparison(comparison: Comparison, form: str) -> bytes:
     from matplotlib import rc_context
 
     with rc_context(LOOK):
-        figure = _figure(comparison)
-        content = BytesIO()
-        undated: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-        figure.savefig(content, format=form, dpi=130, metadata=undated.get(form, {}))
-    return content.getvalue()
+        return picture(_figure(comparison), form)
 
 
 def _figure(comparison: Comparison) -> "Figure":

@@ -86,10 +86,7 @@ def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> byte
     from matplotlib import rc_context
 
     with rc_context(LOOK):
-        figure = _figure(scene, solutions)
-        content = BytesIO()
-        figure.savefig(content, format=form, dpi=130, metadata=undated(form))
-    return content.getvalue()
+        return picture(_figure(scene, solutions), form)
 
 
 def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
@@ -97,9 +94,7 @@ def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
     from matplotlib.figure import Figure
 
     shown = list(zip(scene.goal_names, solutions, strict=True))[:MOST_PICTURES]
-    columns = min((3, 4, 5), key=lambda count: (-len(shown) % count, count))
-    columns = min(columns, len(shown))
-    rows = -(-len(shown) // columns)
+    columns, rows = grid(len(shown))
     width, height = (9.0, 6.8) if len(shown) == 1 else (3.7 * columns, 4.0 * rows + 1.2)
     figure = Figure(figsize=(width, height), facecolor=PAPER)
     FigureCanvasAgg(figure)
@@ -114,6 +109,20 @@ def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
     _legend(figure, scene, len(shown), len(solutions))
     figure.subplots_adjust(0.03, 0.8 / height, 0.97, 1.0 - 1.35 / height, 0.06, 0.34)
     return figure
+
+
+def picture(figure: "Figure", form: str) -> bytes:
+    """Return the content of a figure's file."""
+    content = BytesIO()
+    figure.savefig(content, format=form, dpi=130, metadata=undated(form))
+    return content.getvalue()
+
+
+def grid(count: int) -> tuple[int, int]:
+    """Return columns and rows for some pictures, such that the last row is as full as can be."""
+    columns = min((3, 4, 5), key=lambda columns: (-count % columns, columns))
+    columns = min(columns, count)
+    return columns, -(-count // columns)
 
 
 def undated(form: str) -> dict[str, None]:

@@ -4,7 +4,6 @@ One picture a frame, axes as in `limbik.plugins.output.plot`.
 """
 
 from collections.abc import Sequence
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,8 +23,9 @@ from limbik.plugins.output.plot import (
     SPACE,
     Bounds,
     box_around,
+    grid,
+    picture,
     set_space,
-    undated,
 )
 
 if TYPE_CHECKING:
@@ -46,10 +46,7 @@ def draw_body(scene: BodyScene, found: Sequence[BodySolution], form: str = "png"
     from matplotlib import rc_context
 
     with rc_context(LOOK):
-        figure = _figure(scene, found)
-        content = BytesIO()
-        figure.savefig(content, format=form, dpi=130, metadata=undated(form))
-    return content.getvalue()
+        return picture(_figure(scene, found), form)
 
 
 def _figure(scene: BodyScene, found: Sequence[BodySolution]) -> "Figure":
@@ -57,9 +54,7 @@ def _figure(scene: BodyScene, found: Sequence[BodySolution]) -> "Figure":
     from matplotlib.figure import Figure
 
     shown = np.unique(np.linspace(0, len(found) - 1, min(len(found), MOST_PICTURES)).astype(int))
-    columns = min((3, 4, 5), key=lambda count: (-len(shown) % count, count))
-    columns = min(columns, len(shown))
-    rows = -(-len(shown) // columns)
+    columns, rows = grid(len(shown))
     width, height = (7.0, 7.6) if len(shown) == 1 else (3.7 * columns, 4.0 * rows + 1.2)
     figure = Figure(figsize=(width, height), facecolor=PAPER)
     FigureCanvasAgg(figure)

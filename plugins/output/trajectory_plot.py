@@ -1,12 +1,22 @@
 """Draw a motion: its path, speed and acceleration, and each joint's angle between its limits."""
 
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from limbik.core.scene import Scene
-from limbik.plugins.output.plot import FAINT, FINAL, GOAL, INK, LIMIT, LINE, LOOK, PAPER, SPACE
+from limbik.plugins.output.plot import (
+    FAINT,
+    FINAL,
+    GOAL,
+    INK,
+    LIMIT,
+    LINE,
+    LOOK,
+    PAPER,
+    SPACE,
+    picture,
+)
 from limbik.plugins.output.trajectory_files import axis_angles, axis_names, moving_axes
 from limbik.plugins.paths.joints import JointMotion
 from limbik.plugins.paths.program import Stretch, Trajectory
@@ -36,12 +46,8 @@ def draw_motion(
     """
     from matplotlib import rc_context
 
-    undated = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with rc_context(LOOK):
-        figure = _figure(scene, trajectory, motion)
-        content = BytesIO()
-        figure.savefig(content, format=form, dpi=130, metadata=undated[form])
-    return content.getvalue()
+        return picture(_figure(scene, trajectory, motion), form)
 
 
 def _figure(scene: Scene, trajectory: Trajectory, motion: JointMotion) -> "Figure":

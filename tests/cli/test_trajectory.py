@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from limbik.tests.limbs import POSE_ARM
+
 Run = Callable[..., tuple[int, str, str]]
 
 pytest.importorskip("scipy")
@@ -113,15 +115,9 @@ def test_without_scipy_it_ends_with_3_and_names_the_extra(
     assert "pip install 'limbik[trajectory]'" in err
 
 
-POSES = """\
-limbik: 1
-solver: refine
-chain:
-  joints:
-    - {name: shoulder, heading: [-120, 120], pitch: [-90, 90], bank: [-90, 90]}
-    - {name: elbow, offset: [0, 0, 3], heading: 0, pitch: [0, 150], bank: 0, rest: [0, 60, 0]}
-    - {name: wrist, offset: [0, 0, 3], heading: [-80, 80], pitch: [-80, 80], bank: [-80, 80]}
-    - {name: hand, offset: [0, 0, 1], heading: 0, pitch: 0, bank: 0}
+POSES = (
+    POSE_ARM
+    + """\
 options: {tolerance: 0.0001}
 trajectory:
   dt: 0.1
@@ -132,6 +128,7 @@ trajectory:
   start: a
   program: [{line: {to: b}}]
 """
+)
 
 
 def test_without_goals_a_trajectory_solves_position_and_orientation(
