@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from threading import Thread
 from typing import Any
 
@@ -179,6 +180,10 @@ def segments_of(client: Client, name: str, line: str) -> np.ndarray:
     return to_page(client.viewer.page.drawings[name].lines[line].points)
 
 
+def _is_drawn(client: Client, line: str) -> bool:
+    return bool(np.abs(segments_of(client, "leg-pole", line)).any())
+
+
 def test_lines_end_where_they_should(visit: Visiting) -> None:
     client = visit("leg-pole")
     page = client.viewer.page
@@ -201,7 +206,7 @@ def test_lines_end_where_they_should(visit: Visiting) -> None:
         "FK component": np.stack([one.parts["FK"][:-1], one.parts["FK"][1:]], 1),
     }
     for line, ends in expected.items():
-        until(lambda line=line: np.abs(segments_of(client, "leg-pole", line)).any())  # type: ignore[misc]
+        until(partial(_is_drawn, client, line))
         np.testing.assert_allclose(segments_of(client, "leg-pole", line), ends, atol=1e-4)
     start, tip = segments_of(client, "leg-pole", "bend direction")[0]
     way = (tip - start) / np.linalg.norm(tip - start)

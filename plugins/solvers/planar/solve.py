@@ -199,7 +199,7 @@ def _solve(
         if number == 0 and n <= MOST_DECIDED:
             known_out = not decide(links, tx, ty, work)
         elif number == 0:
-            known_out = hypot(tx, ty) > links.lengths.sum() + tolerance
+            known_out = hypot(tx, ty) > float(links.lengths.sum()) + tolerance
         if known_out:
             starts = STARTS_OUT_OF_REACH
     if known_out:
