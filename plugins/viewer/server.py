@@ -71,9 +71,9 @@ class Viewer:
         gui.set_panel_label(session.name)
         self.page: Page = Page(self._server, session)
         tabs = gui.add_tab_group()
-        names = ("Pose", "Solver", "Options", "FK", "Show")
-        pose, solver, options, fk, show = (tabs.add_tab(name) for name in names)
-        solving = SolverPanel(self.page, solver, options, fk)
+        names = ("Pose", "Solver", "Options", "Joints", "Show")
+        pose, solver, options, joints, show = (tabs.add_tab(name) for name in names)
+        solving = SolverPanel(self.page, solver, options, joints)
         with pose:
             self._pose = PosePanel(self.page, solving.rebuild)
         with show:
