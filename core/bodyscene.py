@@ -265,9 +265,6 @@ def _part(
     if limb.goals is not None and frame != WORLD:
         limb = replace(limb, goals=skeleton.seen_from(frame, limb.goals))
     scene = build_scene(model.name, model, document, folder, registry, limb)
-    if scene.follow and scene.solver is not None:
-        message = "a plug-in's solver solves each frame of a body on its own"
-        raise SceneError([document.fault("solver", message, ("follow",), hint="leave it out")])
     return Part(model.name, scene, limb, frame)
 
 

@@ -148,7 +148,8 @@ class Page:
                 gizmo = self.goals[name]
                 turn = np.eye(3)
                 if gizmo.rotates:
-                    turn = _goal_turn(chained.turn(self.session.frame), one)
+                    given = chained.world_turn(chained.setup, self.session.frame)
+                    turn = _goal_turn(given, one)
                 gizmo.put(chained.to_world(chained.goal), turn, dragged)
                 pole = self.poles[name]
                 pole.visible = chained.setup.in_plane

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import ValidationError
 
-from limbik.core.chain import Chain
+from limbik.core.chain import Chain, Joint
 from limbik.core.errors import Fault, InputError, LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
@@ -48,6 +48,7 @@ class Setup:
         settings: Options of all solvers; those the present one has no use for are kept.
         pole: Where the 2D solver bends to.
         fk: FK offsets, HPB, (n, 3) [rad].
+        own: The joints' own limits, n of them, `{use: name, ...}`; None for ranges.
     """
 
     given: Scene
@@ -56,6 +57,7 @@ class Setup:
     settings: Settings
     pole: Pole
     fk: Array
+    own: tuple[Choice | None, ...]
 
     @classmethod
     def of(cls, scene: Scene, registry: Registry) -> "Setup":
@@ -64,12 +66,21 @@ class Setup:
         if scene.solver is not None:
             choice = {"use": scene.solver.name, **plain(scene.solver.params)}
         pole = scene.pole or _beside(scene.chain)
-        return cls(scene, registry, choice, scene.settings, pole, scene.fk_offsets)
+        own = tuple(_mapping(joint.limit) for joint in scene.chain.joints)
+        return cls(scene, registry, choice, scene.settings, pole, scene.fk_offsets, own)
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The chain with the limits as they are now."""
+        given = self.given.chain
+        if self.own == tuple(_mapping(joint.limit) for joint in given.joints):
+            return given
+        return replace(given, joints=tuple(map(_limited, given.joints, self.own)))
 
     @property
-    def chain(self) -> Chain:
-        """The chain."""
-        return self.given.chain
+    def takes_limits(self) -> bool:
+        """Whether joints can be given other limits: the scene writes its chain itself."""
+        return self.given.body is None
 
     @property
     def in_plane(self) -> bool:
@@ -113,6 +124,7 @@ class Setup:
             solver = self.registry.bind(SOLVER.name, self.choice)
         return replace(
             self.given,
+            chain=self.chain,
             settings=_fitting(self.settings, self.in_plane),
             solver=solver,
             pole=self.pole if self.in_plane else None,
@@ -129,7 +141,9 @@ class Setup:
         """Whether the orientation of a goal has an effect: on a pole rotor, or on the end."""
         if isinstance(self.solver, WholeSolver):
             return self.solver.turns_end
-        return self.in_plane and self.pole.rotor is not None
+        if self.in_plane:
+            return self.pole.rotor is not None
+        return self.settings.end_orientation > 0.0
 
     @cached_property
     def parts(self) -> dict[str, Solver]:
@@ -183,7 +197,7 @@ class Setup:
         trace: bool,
     ) -> Solution:
         asked: dict[str, Any] = {"fk_offsets": self.fk, "continuity": before, "trace": trace}
-        if turn is not None and isinstance(solver, Solver2D):
+        if turn is not None and isinstance(solver, Solver):
             asked["goal_turn"] = turn
         if turn is not None and isinstance(solver, WholeSolver):
             asked["goal_rotation"] = hpb_to_matrix(turn)
@@ -220,6 +234,20 @@ class Setup:
         values = {"position": self.pole.position, "rotor": given}
         return self._changed(pole=read_model(Pole, values))
 
+    def with_bind(self, bind: bool) -> "Setup":
+        """Return the setup whose 2D solver leaves the rest pose where it is, or not."""
+        return self._changed(given=replace(self.given, bind=bind))
+
+    def with_limit(self, joint: int, choice: Choice | None) -> "Setup":
+        """Return the setup with another limit of one joint; None for its ranges.
+
+        Raises:
+            LimbikError: There is none of this name, its parameters are refused, or the solver
+                takes none.
+        """
+        own = (*self.own[:joint], choice, *self.own[joint + 1 :])
+        return self._changed(own=own)
+
     def with_fk(self, joint: int, turn: Array) -> "Setup":
         """Return the setup with another FK offset of one joint, HPB, (3,) [rad]."""
         offsets = self.fk.copy()
@@ -230,8 +258,11 @@ class Setup:
         """Return the strategy in a slot, or the solver, with all its parameters."""
         if slot == SOLVER.name and self.choice["use"] in OWN_SOLVERS:
             return self.choice
-        given = self.choice if slot == SOLVER.name else getattr(self.settings, slot)
-        bound = self.registry.bind(slot, given)
+        return self.full(slot, self.choice if slot == SOLVER.name else getattr(self.settings, slot))
+
+    def full(self, slot: str, choice: str | Choice) -> Choice:
+        """Return a choice with all its parameters."""
+        bound = self.registry.bind(slot, choice)
         return {"use": bound.name, **plain(bound.params)}
 
     def fresh(self, slot: str, name: str) -> Choice:
@@ -257,6 +288,18 @@ class Setup:
         changed = replace(self, **changes)
         changed.solver  # noqa: B018 - made now, so that it is refused now
         return changed
+
+
+def _mapping(choice: str | Mapping[str, Any] | None) -> Choice | None:
+    """Return a choice of a strategy as a mapping."""
+    return {"use": choice} if isinstance(choice, str) else None if choice is None else dict(choice)
+
+
+def _limited(joint: Joint, own: Choice | None) -> Joint:
+    """Return a joint with a limit of its own, or with its ranges."""
+    if own is None:
+        return replace(joint, limit=None)
+    return replace(joint, limit=own, heading=None, pitch=None, bank=None)
 
 
 def plain(params: Any) -> dict[str, Any]:

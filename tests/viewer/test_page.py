@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -229,3 +230,24 @@ def test_the_panels_follow_the_chain_that_is_selected(visit: Visiting) -> None:
     until(lambda: "left_elbow" in client.widget("joint").options)
     client.set("with", "fabrik")
     until(lambda: page._other.visible)
+
+
+def test_serving_ends_a_while_after_the_last_page_was_closed(visit: Visiting) -> None:
+    first = visit("arm")
+    viewer = first.viewer
+    waiting = Thread(target=viewer.wait, args=(2.0,), daemon=True)
+    waiting.start()
+    until(lambda: viewer.pages == 1)
+    second = Client(viewer)
+    first.close()
+    until(lambda: viewer.pages == 1)
+    waiting.join(3.0)
+    assert waiting.is_alive()  # a second page keeps it
+    second.close()
+    until(lambda: viewer.pages == 0)
+    again = Client(viewer)  # somebody loads the page anew
+    waiting.join(3.0)
+    assert waiting.is_alive()
+    again.close()
+    waiting.join(PATIENCE)
+    assert not waiting.is_alive()
