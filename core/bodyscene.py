@@ -262,8 +262,8 @@ def _part(
     except ChainError as error:
         found = [document.fault(f.code, f.message, ("end",), hint=f.hint) for f in error.faults]
         raise SceneError(found) from error
-    if limb.goals is not None and frame != WORLD:
-        limb = replace(limb, goals=skeleton.seen_from(frame, limb.goals))
+    if frame != WORLD:
+        limb = skeleton.seen_from(frame, limb)
     scene = build_scene(model.name, model, document, folder, registry, limb)
     if scene.follow and scene.solver is not None:
         message = "a plug-in's solver solves each frame of a body on its own"

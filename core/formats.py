@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from limbik.core.chain import Chain
+from limbik.core.frames import mirror_hpb
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.settings import Model
 
@@ -184,6 +185,12 @@ class Bake:
         """The body the chain came from."""
         return self.scene.body or Body(self.scene.chain)
 
+    @property
+    def goal_turns(self) -> Array | None:
+        """How the goals are turned, HPB, (m, 3) [rad], mirrored if `mirrored`; see `Scene`."""
+        turns = self.scene.goal_turns
+        return turns if turns is None or not self.mirrored else mirror_hpb(turns)
+
 
 @dataclass(frozen=True, eq=False)
 class BodyBake:
@@ -197,6 +204,8 @@ class BodyBake:
         frame_time: Seconds from frame to frame.
         mirrored: Whether left and right are exchanged.
         metrics: Of each chain by its name, see `Bake`.
+        goal_turns: How the goals of chains that turn by them are turned in the world, HPB, (m, 3)
+            [rad], by the names of `solutions`; mirrored if `mirrored`.
     """
 
     scene: "BodyScene"
@@ -205,6 +214,7 @@ class BodyBake:
     frame_time: float
     mirrored: bool = False
     metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    goal_turns: dict[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

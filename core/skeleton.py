@@ -14,7 +14,7 @@ import numpy as np
 from limbik.core.chain import Chain, Joint
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Body, Motion
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.wording import near_match
 
 WORLD: Final = -1
@@ -129,16 +129,22 @@ class Skeleton:
             raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
         return way[way.index(first) :: -1]
 
-    def seen_from(self, joint: int, places: Array) -> Array:
-        """Return world positions, one a frame, in the axes of a joint of the skeleton's own motion.
+    def seen_from(self, joint: int, limb: Limb) -> Limb:
+        """Return a limb with its goals in the axes of a joint, as the skeleton itself moves.
 
         Args:
             joint: Its index.
-            places: (m, 3) [length].
+            limb: With goals in the world, one a frame, or none.
         """
+        if limb.goals is None:
+            return limb
         positions, rotations = self.motion.world()
-        away = places - positions[:, joint]
-        return np.asarray((rotations[:, joint].swapaxes(-1, -2) @ away[..., None])[..., 0])
+        axes = rotations[:, joint].swapaxes(-1, -2)
+        away = limb.goals - positions[:, joint]
+        turns = limb.goal_turns
+        if turns is not None:
+            turns = matrix_to_hpb(axes @ hpb_to_matrix(turns))
+        return replace(limb, goals=(axes @ away[..., None])[..., 0], goal_turns=turns)
 
     def placed(self, limb: Limb, positions: Array, rotations: Array) -> tuple[Array, Array]:
         """Return where a limb's base is and how it is turned.
