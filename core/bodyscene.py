@@ -268,7 +268,8 @@ def _part(
     if scene.follow and scene.solver is not None:
         message = "a plug-in's solver solves each frame of a body on its own"
         raise SceneError([document.fault("solver", message, ("follow",), hint="leave it out")])
-    return Part(model.name, scene, limb, frame)
+    assert isinstance(scene.body, Limb)
+    return Part(model.name, scene, scene.body, frame)
 
 
 def _count_faults(parts: Sequence[Part], frames: int) -> Iterator[Fault]:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -69,7 +69,7 @@ class Body:
             holds no motion.
         goal_names: m names.
         frame_time: Seconds a frame of that motion.
-        goal_turns: How the end is turned there, HPB, (m, 3) [rad]; turns pole rotors.
+        goal_turns: How the end is turned there, HPB, (m, 3) [rad].
     """
 
     chain: Chain
@@ -82,6 +82,10 @@ class Body:
     def motion(self, angles: Array, frame_time: float) -> Motion:
         """Return the whole skeleton's motion for the chain's angles, HPB (m, n, 3) [rad]."""
         return chain_motion(self.chain, angles, frame_time)
+
+    def turning_end(self) -> Self:
+        """Return the body for a solver that turns the end to its goals, if the file lets it."""
+        return self
 
     def values(self, angles: Array) -> "Values | None":
         """Return what the model itself calls its joints' values, if it has its own."""

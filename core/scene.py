@@ -222,6 +222,8 @@ def build_scene(
     found += [*file_axes_faults(model, goals, turns, document), *goals.faults]
     if chain is None or found:
         raise SceneError(shortlist(found))
+    if body is not None and turns is not None and (turns_end or model.options.end_orientation):
+        body = body.turning_end()
     return Scene(
         title,
         chain,

@@ -7,7 +7,7 @@ own, see `limbik.core.formats.SceneInput`; the one here is that of joints writte
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
@@ -30,17 +30,23 @@ class Limb(Body):
         before, after: What a joint's angles stand between: its turn relative to its parent in the
             skeleton is `before @ HPB(angles) @ after`, (n, 3, 3).
         written: How many of the joints take the angles; all, or all but the end.
+        turns_end: Whether the end is turned to the goals too, not only carried to them.
     """
 
     at: tuple[int, ...] = field(kw_only=True)
     before: Array = field(kw_only=True)
     after: Array = field(kw_only=True)
     written: int = field(kw_only=True)
+    turns_end: bool = field(default=False, kw_only=True)
 
     @property
     def turned(self) -> tuple[int, ...]:
-        """Joints of the skeleton that a solve turns: all but the end."""
-        return self.at[:-1]
+        """Joints of the skeleton that a solve turns: all but the end, or all."""
+        return self.at if self.turns_end else self.at[:-1]
+
+    def turning_end(self) -> Self:
+        """Return the limb for a solver that turns the end to its goals."""
+        return replace(self, turns_end=True)
 
     def turns(self, angles: Array) -> Array:
         """Return the turns of the first `written` joints, (..., written, 3, 3), for angles [rad].
