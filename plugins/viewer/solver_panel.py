@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from limbik.core.slots import LIMIT, SOLVER
+from limbik.core.whole import OWN_SOLVERS
 from limbik.plugins.viewer.controls import Control, value_at
 from limbik.plugins.viewer.page import Page
 from limbik.plugins.viewer.session import Shown
@@ -114,14 +115,22 @@ class SolverPanel:
     def _build_options(self) -> None:
         gui, values = self._gui, self._setup.settings.model_dump()
         with self._folder("options", "options of the solve", 0.0):
+            self._say_whose()
             for control in self._setup.options:
                 held = value_at(values, control.path)
-                if control.path[0] in OF_FK or (held is None and control.kind != "switch"):
-                    continue
+                group = control.path if control.kind != "switch" else control.path[:-1]
+                if control.path[0] in OF_FK or value_at(values, group) is None:
+                    continue  # or of a group that is off
                 if control.by_joint:
                     self._add_by_joint(control, held)
                 else:
                     add_control(gui, control, held, self._set_option)
+
+    def _say_whose(self) -> None:
+        """Tell people that a solver of a plug-in may leave some of this aside."""
+        name = self._setup.choice["use"]
+        if name not in OWN_SOLVERS:
+            self._gui.add_markdown(f"*{name}* heeds what it has use for.")
 
     def _add_by_joint(self, control: Control, held: Any) -> None:
         """Add a folder with an option's value for each joint."""
@@ -143,6 +152,7 @@ class SolverPanel:
     def _build_fk(self) -> None:
         gui, values = self._gui, self._setup.settings.model_dump()
         with self._folder("joints", "forward kinematics", 0.0):
+            self._say_whose()
             for control in self._setup.options:
                 if control.path[0] in OF_FK:
                     add_control(gui, control, value_at(values, control.path), self._set_option)

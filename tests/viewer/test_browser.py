@@ -111,12 +111,14 @@ class Visit:
     def choose(self, now: str, wanted: str) -> None:
         """Choose from the list that shows what is chosen now."""
 
-        def lists() -> list[Any]:
-            boxes = self.page.locator("input:visible").all()
-            return [box for box in boxes if box.input_value() == now]
+        boxes = self.page.locator("input:visible")
 
-        self.until(lambda: bool(lists()))
-        lists()[0].click()
+        def shown() -> list[str]:
+            values: list[str] = boxes.evaluate_all("all => all.map(one => one.value)")
+            return values
+
+        self.until(lambda: now in shown())
+        boxes.nth(shown().index(now)).click()
         self.page.get_by_role("option", name=wanted, exact=True).click()
 
     def picture(self, path: Path) -> None:
