@@ -11,6 +11,7 @@ from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import Fault
 from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
@@ -135,12 +136,11 @@ class WholeSolver:
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
     """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
     planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if turns_end or planned or model.solver == "2d" or not isinstance(model.goals, list):
+    if turns_end or planned or model.solver == "2d":
         return
     if model.solver in OWN_SOLVERS and model.options.end_orientation:
         return
-    for number, goal in enumerate(model.goals):
-        if goal.turn is not None:
-            message = "its orientation has no effect: the scene's solver goes to positions alone"
-            hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
-            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)
+    for path in turn_paths(model):
+        message = "its orientation has no effect: the scene's solver goes to positions alone"
+        hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
+        yield document.fault("solver", message, path, hint=hint)

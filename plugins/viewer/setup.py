@@ -5,13 +5,12 @@ from copy import deepcopy
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from limbik.core.chain import Chain, Joint
-from limbik.core.errors import Fault, InputError, LimbikError
+from limbik.core.errors import LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
@@ -19,7 +18,7 @@ from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene
-from limbik.core.settings import ONLY_3D, Model, Settings
+from limbik.core.settings import ONLY_3D, Settings
 from limbik.core.slots import OPTIONS, SOLVER
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
@@ -27,14 +26,13 @@ from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.solving import single_solver
 from limbik.core.strategy import layout
+from limbik.core.validation import read_model
 from limbik.core.whole import OWN_SOLVERS
-from limbik.core.wording import found_words, refusal
 from limbik.plugins.viewer.controls import Control, controls
 
 IN_PLANE = "2d"
 PLAIN_FINISHES = ("newton", "none")  # all that 2D has, without parameters
 Choice = dict[str, Any]
-M = TypeVar("M", bound=Model)
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,26 +318,6 @@ def put(values: Mapping[str, Any], path: tuple[str, ...], value: Any) -> dict[st
         place = place.setdefault(key, {})
     place[path[-1]] = value
     return found
-
-
-def read_model(shape: type[M], values: dict[str, Any]) -> M:
-    """Check values by a model.
-
-    Raises:
-        InputError: With a fault for each value that is refused.
-    """
-    try:
-        return shape.model_validate(values)
-    except ValidationError as error:
-        faults = []
-        for complaint in error.errors(include_url=False):
-            kind, context = complaint["type"], complaint.get("ctx", {})
-            words = refusal(kind, context, complaint["msg"], complaint["input"])
-            text = (
-                words.message or f"must be {words.allowed}, not {found_words(complaint['input'])}"
-            )
-            faults.append(Fault(words.code, text, ".".join(map(str, complaint["loc"]))))
-        raise InputError(faults) from None
 
 
 def _fitting(settings: Settings, in_plane: bool) -> Settings:
