@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
+from limbik.core.strategy import mirrored
 from limbik.core.whole import OWN_SOLVERS, Batch, WholeSolution, prepare
 from limbik.core.yamlfile import Document
 
@@ -94,38 +95,61 @@ class WholeSolver:
     """
 
     def __init__(self, bound: Bound, chain: Chain, settings: Settings) -> None:
-        self._bound, self._settings = bound, settings
-        self.chain = chain
+        self._bound = bound
+        self.chain, self.settings = chain, settings
         self._batch = prepare(bound, chain, settings)
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return self._bound.name
 
     @property
     def turns_end(self) -> bool:
         """Whether it follows a goal's orientation."""
         return isinstance(self._batch, PoseBatch)
 
+    @property
+    def angle(self) -> float | None:
+        """Angle to a goal's orientation that counts as reached [rad]; None if it follows none."""
+        return self._batch.angle if isinstance(self._batch, PoseBatch) else None
+
     def moved(self, position: Array, rotation: Array) -> "WholeSolver":
         """Return the solver for the chain with its base elsewhere."""
-        return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)
+        return WholeSolver(self._bound, self.chain.moved(position, rotation), self.settings)
+
+    def mirrored(self) -> "WholeSolver":
+        """Return the solver of the chain mirrored in the world's YZ plane (M-14)."""
+        from limbik.core.mirror import mirrored_settings
+
+        image = type(self._bound.params)(**mirrored(self._bound.params))
+        settings = mirrored_settings(self.settings, {})
+        return WholeSolver(replace(self._bound, params=image), self.chain.mirrored(), settings)
 
     def solve(
         self,
         goal: Array,
         *,
-        goal_rotation: Array | None = None,
+        goal_turn: Array | None = None,
         fk_offsets: Array | None = None,
         continuity: Continuity | None = None,
         trace: bool = False,
     ) -> Solution:
-        """Solve one goal.
+        """Solve one goal; what else limbik's own solver takes is of no use here."""
+        turns = None if goal_turn is None else goal_turn[None]
+        return self.solve_many(np.asarray(goal, np.float64)[None], goal_turns=turns).single(0)
 
-        A solver of pose goals follows the orientation too, (3, 3) or NaN; such solvers have no use
-        for the rest.
-        """
-        rows = np.asarray(goal, np.float64).reshape(1, 3)
-        if not isinstance(self._batch, PoseBatch):
-            return self._batch(rows, False).single(0)
-        turned = None if goal_rotation is None else goal_rotation[None]
-        return self._batch.solve_poses(rows, turned, False).single(0)
+    def solve_many(
+        self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None
+    ) -> Solution:
+        """Solve goals, each on its own; see `solve_turned`."""
+        return solve_turned(self._batch, goals, goal_turns, False)
+
+    def follow(
+        self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None
+    ) -> Solution:
+        """Solve goals as a path; see `solve_turned`."""
+        return solve_turned(self._batch, goals, goal_turns, True)
 
 
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:

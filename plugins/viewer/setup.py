@@ -17,7 +17,7 @@ from limbik.core.pole import Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.settings import ONLY_3D, Model, Settings
 from limbik.core.slots import OPTIONS, SOLVER
@@ -129,7 +129,9 @@ class Setup:
         """Whether the orientation of a goal has an effect: on a pole rotor, or on the end."""
         if isinstance(self.solver, WholeSolver):
             return self.solver.turns_end
-        return self.in_plane and self.pole.rotor is not None
+        if self.in_plane:
+            return self.pole.rotor is not None
+        return self.settings.end_orientation > 0.0
 
     @cached_property
     def parts(self) -> dict[str, Solver]:
@@ -183,10 +185,8 @@ class Setup:
         trace: bool,
     ) -> Solution:
         asked: dict[str, Any] = {"fk_offsets": self.fk, "continuity": before, "trace": trace}
-        if turn is not None and isinstance(solver, Solver2D):
+        if turn is not None and (self.takes_turn or self.in_plane):
             asked["goal_turn"] = turn
-        if turn is not None and isinstance(solver, WholeSolver):
-            asked["goal_rotation"] = hpb_to_matrix(turn)
         return solver.solve(goal, **asked)
 
     def with_option(self, path: tuple[str, ...], value: Any) -> "Setup":
