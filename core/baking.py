@@ -1,7 +1,7 @@
 """Bake a scene: solve its goals as the frames of a motion and measure the motion (M-12)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, Final
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from limbik.core.body import BodySolver, chain_solutions
 from limbik.core.bodyscene import BodyScene
 from limbik.core.formats import Bake, BodyBake, Motion
+from limbik.core.frames import mirror_hpb
 from limbik.core.mirror import mirrored_solution, side_swapped
 from limbik.core.motion import motion_metrics
 from limbik.core.posegoals import solve_turned
@@ -16,24 +17,12 @@ from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene, require_goals
 from limbik.core.skeleton import Limb, Skeleton
-from limbik.core.solution import Solution
-from limbik.core.solution2d import PLANAR_ARRAYS, PlanarSolution
+from limbik.core.solution import OF_ALL, Solution
 from limbik.core.solving import scene_solver, solve_part
 from limbik.core.whole import prepare
 
 BLOCK: Final = 500  # goals solved between two reports of progress
 FRAME_TIME: Final = 1.0 / 30.0
-_ARRAYS: Final = (
-    "goal",
-    "angles",
-    "positions",
-    "rotations",
-    "iterations",
-    "distance",
-    "status",
-    "bend_vector",
-    "bend_angle",
-)
 
 
 def bake_scene(
@@ -103,14 +92,15 @@ def bake_body(
             progress(number)
     seconds = frame_time or scene.frame_time or FRAME_TIME
     solutions = {name: stacked(of) for name, of in chain_solutions(found).items()}
+    turns = {name: np.stack([body.goal_turns[name] for body in found]) for name in body.goal_turns}
     chains = [(part.limb, solutions[part.name].angles) for part in scene.parts]
     motion = body_motion(scene.skeleton, chains, seconds)
     if mirrored:
-        names = side_swapped(list(solutions))
-        images = map(mirrored_solution, solutions.values())
-        solutions = dict(zip(names, images, strict=True))
+        swapped = dict(zip(solutions, side_swapped(list(solutions)), strict=True))
+        solutions = {swapped[name]: mirrored_solution(of) for name, of in solutions.items()}
+        turns = {swapped[name]: mirror_hpb(of) for name, of in turns.items()}
     metrics = {name: motion_metrics(of).record() for name, of in solutions.items()}
-    return BodyBake(scene, solutions, motion, seconds, mirrored, metrics)
+    return BodyBake(scene, solutions, motion, seconds, mirrored, metrics, turns)
 
 
 def body_motion(
@@ -145,10 +135,11 @@ def _joined(parts: Sequence[Solution]) -> Solution:
 
 
 def _gathered(parts: Sequence[Solution], gather: Callable[[list[Array]], Array]) -> Solution:
-    names = [*_ARRAYS, *(PLANAR_ARRAYS if isinstance(parts[-1], PlanarSolution) else ())]
     joined: dict[str, Any] = {
-        name: gather([getattr(part, name) for part in parts])
-        for name in names
-        if getattr(parts[-1], name) is not None
+        f.name: gather([getattr(part, f.name) for part in parts])
+        for f in fields(parts[-1])
+        if f.name not in OF_ALL and getattr(parts[-1], f.name) is not None
     }
+    if "notes" in joined:
+        joined["notes"] = tuple(joined["notes"].tolist())
     return replace(parts[0], **joined, continuity=parts[-1].continuity)

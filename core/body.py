@@ -4,7 +4,7 @@ A chain solved earlier moves the base of those that hang from it; each has its o
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -36,7 +36,8 @@ class BodyChain:
         fk_offsets: As `Solver.solve` takes them, (n, 3) [rad]; None for none.
         frame: Index of the joint in whose frame goals and pole are; -1 for the world.
         follow: Whether `frames` solves each goal from the pose before.
-        turns: How the goals of the frames are turned, HPB, (m, 3) [rad], for the 2D solver.
+        turns: How the goals of the frames are turned, HPB, (m, 3) [rad], in the axes of `frame`;
+            NaN for goals without.
     """
 
     name: str
@@ -58,6 +59,8 @@ class BodySolution:
         positions: World positions of all joints, (n, 3) [length].
         rotations: Their world rotations, (n, 3, 3).
         continuity: Of each chain, for the next solve of a path.
+        goal_turns: How the goals of chains that turn by them are turned in the world, HPB, (3,)
+            [rad]; NaN for a goal without.
     """
 
     skeleton: Skeleton
@@ -65,6 +68,7 @@ class BodySolution:
     positions: Array
     rotations: Array
     continuity: dict[str, Continuity]
+    goal_turns: dict[str, Array] = field(default_factory=dict)
 
     @property
     def reached(self) -> bool:
@@ -219,21 +223,20 @@ class BodySolver:
             "continuity": before,
             "trace": trace,
         }
-        if chain.turns is not None:
-            turned = chain.turns[min(frame, len(chain.turns) - 1)]
-            if isinstance(solver, Solver):
-                asked["goal_turn"] = turned
-            if isinstance(solver, WholeSolver):
-                asked["goal_rotation"] = hpb_to_matrix(turned)
+        turned = None if chain.turns is None else chain.turns[min(frame, len(chain.turns) - 1)]
         if chain.frame != WORLD:
             origin, axes = found.positions[chain.frame], found.rotations[chain.frame]
             goal = origin + axes @ goal
-            if "goal_rotation" in asked:
-                asked["goal_rotation"] = axes @ asked["goal_rotation"]
-            if "goal_turn" in asked and not isinstance(solver, Solver2D):
-                asked["goal_turn"] = matrix_to_hpb(axes @ hpb_to_matrix(asked["goal_turn"]))
+            if turned is not None:
+                turned = matrix_to_hpb(axes @ hpb_to_matrix(turned))
             if isinstance(solver, Solver2D):
                 solver = solver.with_pole(origin + axes @ np.array(solver.pole.position))
+        if turned is not None:
+            found.goal_turns[chain.name] = turned
+            if isinstance(solver, WholeSolver):
+                asked["goal_rotation"] = hpb_to_matrix(turned)
+            else:
+                asked["goal_turn"] = turned
         solution = solver.solve(goal, **asked)
         found.solutions[chain.name] = solution
         if solution.continuity is not None:

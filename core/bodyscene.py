@@ -262,13 +262,11 @@ def _part(
     except ChainError as error:
         found = [document.fault(f.code, f.message, ("end",), hint=f.hint) for f in error.faults]
         raise SceneError(found) from error
-    if limb.goals is not None and frame != WORLD:
-        limb = replace(limb, goals=skeleton.seen_from(frame, limb.goals))
+    if frame != WORLD:
+        limb = skeleton.seen_from(frame, limb)
     scene = build_scene(model.name, model, document, folder, registry, limb)
-    if scene.follow and scene.solver is not None:
-        message = "a plug-in's solver solves each frame of a body on its own"
-        raise SceneError([document.fault("solver", message, ("follow",), hint="leave it out")])
-    return Part(model.name, scene, limb, frame)
+    assert isinstance(scene.body, Limb)
+    return Part(model.name, scene, scene.body, frame)
 
 
 def _count_faults(parts: Sequence[Part], frames: int) -> Iterator[Fault]:

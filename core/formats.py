@@ -10,11 +10,12 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from limbik.core.chain import Chain
+from limbik.core.frames import mirror_hpb
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.settings import Model
 
@@ -68,7 +69,7 @@ class Body:
             holds no motion.
         goal_names: m names.
         frame_time: Seconds a frame of that motion.
-        goal_turns: How the end is turned there, HPB, (m, 3) [rad]; turns pole rotors.
+        goal_turns: How the end is turned there, HPB, (m, 3) [rad].
     """
 
     chain: Chain
@@ -81,6 +82,10 @@ class Body:
     def motion(self, angles: Array, frame_time: float) -> Motion:
         """Return the whole skeleton's motion for the chain's angles, HPB (m, n, 3) [rad]."""
         return chain_motion(self.chain, angles, frame_time)
+
+    def turning_end(self) -> Self:
+        """Return the body for a solver that turns the end to its goals, if the file lets it."""
+        return self
 
     def values(self, angles: Array) -> "Values | None":
         """Return what the model itself calls its joints' values, if it has its own."""
@@ -184,6 +189,12 @@ class Bake:
         """The body the chain came from."""
         return self.scene.body or Body(self.scene.chain)
 
+    @property
+    def goal_turns(self) -> Array | None:
+        """How the goals are turned, HPB, (m, 3) [rad], mirrored if `mirrored`; see `Scene`."""
+        turns = self.scene.goal_turns
+        return turns if turns is None or not self.mirrored else mirror_hpb(turns)
+
 
 @dataclass(frozen=True, eq=False)
 class BodyBake:
@@ -197,6 +208,8 @@ class BodyBake:
         frame_time: Seconds from frame to frame.
         mirrored: Whether left and right are exchanged.
         metrics: Of each chain by its name, see `Bake`.
+        goal_turns: How the goals of chains that turn by them are turned in the world, HPB, (m, 3)
+            [rad], by the names of `solutions`; mirrored if `mirrored`.
     """
 
     scene: "BodyScene"
@@ -205,6 +218,7 @@ class BodyBake:
     frame_time: float
     mirrored: bool = False
     metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    goal_turns: dict[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -9,23 +9,29 @@ UNIT = 1e-3  # largest error of a quaternion's length that is taken for rounding
 SQUARE = 1e-6  # likewise of RᵀR
 
 
-def quaternion_to_hpb(quaternion: ArrayLike) -> Array:
-    """Return the HPB angles [rad] of a quaternion (w, x, y, z).
+def quaternion_to_hpb(quaternions: ArrayLike) -> Array:
+    """Return the HPB angles [rad], (..., 3), of quaternions (w, x, y, z), (..., 4); NaN stays.
 
     Raises:
-        ValueError: Its length is not 1.
+        ValueError: The length of one is not 1.
     """
-    q = np.asarray(quaternion, np.float64)
-    length = float(np.linalg.norm(q))
-    if abs(length - 1.0) > UNIT:
-        raise ValueError(f"a quaternion must have length 1, this one has {length:g}")
-    w, x, y, z = q / length
+    q = np.asarray(quaternions, np.float64)
+    length = np.linalg.norm(q, axis=-1)
+    wrong = np.abs(length - 1.0) > UNIT
+    if wrong.any():
+        raise ValueError(length_fault(float(length[wrong][0])))
+    w, x, y, z = np.moveaxis(q / length[..., None], -1, 0)
     rows = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
     ]
-    return matrix_to_hpb(rows)
+    return matrix_to_hpb(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
+
+
+def length_fault(length: float) -> str:
+    """Say that a quaternion of this length does not turn."""
+    return f"a quaternion must have length 1, this one has {length:g}"
 
 
 def matrix_turn(matrix: ArrayLike) -> Array:

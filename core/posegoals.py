@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from limbik.core.binding import Bound
 from limbik.core.chain import Chain
 from limbik.core.errors import Fault
 from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
@@ -47,9 +48,9 @@ class PoseBatch(ABC):
     tolerance: float
     angle: float
 
-    def __call__(self, goals: Array, follow: bool) -> Solution:
-        """Solve goals without an orientation, (m, 3) [length]."""
-        return self.solve_poses(goals, None, follow)
+    def __call__(self, goals: Array, follow: bool, near: Array | None = None, /) -> Solution:
+        """Solve goals without an orientation, see `limbik.core.whole.Batch`."""
+        return self.solve_poses(goals, None, follow, near)
 
     @abstractmethod
     def solve_poses(
@@ -117,25 +118,29 @@ class WholeSolver:
     ) -> Solution:
         """Solve one goal.
 
-        A solver of pose goals follows the orientation too, (3, 3) or NaN; such solvers have no use
-        for the rest.
+        A solver of pose goals follows the orientation too, (3, 3) or NaN. Of a continuity the pose
+        counts, which the solver starts from. Such solvers have no use for the rest.
         """
         rows = np.asarray(goal, np.float64).reshape(1, 3)
-        if not isinstance(self._batch, PoseBatch):
-            return self._batch(rows, False).single(0)
-        turned = None if goal_rotation is None else goal_rotation[None]
-        return self._batch.solve_poses(rows, turned, False).single(0)
+        near = continuity.angles if continuity is not None and continuity.known else None
+        follow = near is not None
+        if isinstance(self._batch, PoseBatch):
+            turned = None if goal_rotation is None else goal_rotation[None]
+            found: Solution = self._batch.solve_poses(rows, turned, follow, near)
+        else:
+            found = self._batch(rows, follow, near)
+        one = found.single(0)
+        return replace(one, continuity=Continuity.from_pose(one.angles))
 
 
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
     """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
     planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if turns_end or planned or model.solver == "2d" or not isinstance(model.goals, list):
+    if turns_end or planned or model.solver == "2d":
         return
     if model.solver in OWN_SOLVERS and model.options.end_orientation:
         return
-    for number, goal in enumerate(model.goals):
-        if goal.turn is not None:
-            message = "its orientation has no effect: the scene's solver goes to positions alone"
-            hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
-            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)
+    for path in turn_paths(model):
+        message = "its orientation has no effect: the scene's solver goes to positions alone"
+        hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
+        yield document.fault("solver", message, path, hint=hint)

@@ -45,7 +45,7 @@ from limbik.core.pole import Pole
 from limbik.core.posegoals import PoseBatch, turn_faults
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
-from limbik.core.scenegoals import goals_of, pole_of, turns_of, twice
+from limbik.core.scenegoals import file_axes_faults, goals_of, pole_of, taken_turns, twice
 from limbik.core.scenemodel import JointModel, JudgeModel, SceneModel, SolveModel
 from limbik.core.sceneoptions import option_faults, unknown_joints
 from limbik.core.settings import Settings
@@ -209,30 +209,28 @@ def build_scene(
     chain, names = (body.chain, body.chain.names) if body else (chain, tuple(joints))
     found = [*faults, *unknown_joints(model.fk, names, ("fk",), document)]
     limited = [] if chain is None else [j.name for j in chain.joints if j.limit is not None]
-    found += option_faults(names, limited, model, document)
-    solver = None
+    goals = goals_of(model, document, folder, title, body)
+    found += option_faults(names, limited, model, goals, document)
+    solver, turns_end = None, False
     try:
         if chain is not None and not found:
             solver, turns_end = _solver(model, chain, registry)
             found += turn_faults(model, turns_end, document)
     except ChainError as error:
         found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
-    goal_names, goals, goal_faults = goals_of(model, document, folder)
-    turns = turns_of(model)
-    if body and body.goals is not None and "goals" not in document.content:
-        goal_names, goals = body.goal_names, body.goals
-        turned = model.options.end_orientation or (model.pole and model.pole.rotor)
-        turns = body.goal_turns if turned else None
-    found += goal_faults
+    turns = taken_turns(model, goals, turns_end)
+    found += [*file_axes_faults(model, goals, turns, document), *goals.faults]
     if chain is None or found:
         raise SceneError(shortlist(found))
+    if body is not None and turns is not None and (turns_end or model.options.end_orientation):
+        body = body.turning_end()
     return Scene(
         title,
         chain,
         model.options,
         np.radians([model.fk.get(name, (0.0, 0.0, 0.0)) for name in names]),
-        goal_names,
-        goals,
+        goals.names,
+        goals.places,
         model.follow,
         document,
         model.judge,

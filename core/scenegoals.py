@@ -1,25 +1,62 @@
-"""The goals of a scene: from its own list, a CSV file or an NPZ file."""
+"""The goals of a scene: from its own list, a CSV file, an NPZ file, or its chain's own motion."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from limbik.core.errors import Fault
+from limbik.core.formats import Body
 from limbik.core.frames import BY_NAME
-from limbik.core.goals import GoalTable, read_goal_arrays, read_goals
+from limbik.core.goalarrays import read_goal_arrays
+from limbik.core.goals import GoalTable, read_goals
 from limbik.core.pole import Pole
 from limbik.core.rotation import Array
-from limbik.core.scenemodel import CsvModel, NpzModel, SceneModel, SolveModel
+from limbik.core.scenemodel import CsvModel, GoalModel, NpzModel, SceneModel, SolveModel
 from limbik.core.yamlfile import Document, KeyPath
 
 
+@dataclass(frozen=True, eq=False)
+class Goals:
+    """The goals of a chain.
+
+    Attributes:
+        names: m names.
+        places: (m, 3) [length], in limbik's axes.
+        turns: Orientations, HPB, (m, 3) [rad]; NaN for goals without, None if no goal has one.
+        given: Where the orientations came from, as a path of the scene's keys.
+        faults: What is wrong with them; the rest is only good when this is empty.
+    """
+
+    names: tuple[str, ...]
+    places: Array
+    turns: Array | None = None
+    given: KeyPath = ("goals",)
+    faults: tuple[Fault, ...] = ()
+
+
 def goals_of(
-    model: SolveModel, document: Document, folder: Path
-) -> tuple[tuple[str, ...], Array, list[Fault]]:
-    """Give names, positions (m, 3) in limbik's axes, and faults of the goals."""
-    names, places, faults = _given(model, document, folder)
-    return names, turned(model, places), faults
+    model: SolveModel, document: Document, folder: Path, title: str, body: Body | None
+) -> Goals:
+    """Give the goals of a chain.
+
+    Args:
+        model: What is asked for.
+        document: Where the model came from.
+        folder: Folder that relative paths start from.
+        title: Name of the chain, if it is one of several.
+        body: What the chain came from; its motion's goals are taken where the scene has none.
+    """
+    if body is not None and body.goals is not None and "goals" not in document.content:
+        return Goals(body.goal_names, body.goals, body.goal_turns)
+    if isinstance(model.goals, CsvModel):
+        path = folder / model.goals.csv
+        return _of_table(read_goals(path, str(path), title), "csv", model, document)
+    if isinstance(model.goals, NpzModel):
+        table = read_goal_arrays(folder / model.goals.npz, model.goals.array, title)
+        return _of_table(table, "npz", model, document)
+    return _listed(model.goals, model, document)
 
 
 def pole_of(model: SolveModel) -> Pole | None:
@@ -36,6 +73,21 @@ def turned(model: SolveModel, places: Array) -> Array:
     return places if axes is None else axes.points(places)
 
 
+def turn_paths(model: SolveModel) -> Iterator[KeyPath]:
+    """Give the places of the orientations in a scene's own list of goals."""
+    for number, goal in enumerate(model.goals if isinstance(model.goals, list) else ()):
+        if goal.turn_key:
+            yield ("goals", number, goal.turn_key)
+
+
+def taken_turns(model: SolveModel, goals: Goals, turns_end: bool) -> Array | None:
+    """Return the goals' turns if anything turns by them; files may hold more than is asked for."""
+    planned = isinstance(model, SceneModel) and model.trajectory is not None
+    rotor = model.pole is not None and model.pole.rotor is not None
+    taken = turns_end or planned or rotor or model.options.end_orientation > 0.0
+    return goals.turns if taken else None
+
+
 def axes_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     """Refuse what only has a meaning in limbik's axes where a scene gives others."""
     if model.axes not in BY_NAME:
@@ -43,36 +95,27 @@ def axes_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     if isinstance(model, SceneModel) and model.trajectory is not None:
         message = "a trajectory is in limbik's axes"
         yield document.fault("axes", message, ("axes",), hint="leave 'axes' out")
-    for number, goal in enumerate(model.goals if isinstance(model.goals, list) else ()):
-        if goal.turn_key:
-            message = "an orientation is in limbik's axes"
-            hint = "leave 'axes' out and give the positions in limbik's axes too"
-            yield document.fault("axes", message, ("goals", number, goal.turn_key), hint=hint)
+    for path in turn_paths(model):
+        yield _axes_fault(path, document)
 
 
-def _given(
-    model: SolveModel, document: Document, folder: Path
-) -> tuple[tuple[str, ...], Array, list[Fault]]:
-    if isinstance(model.goals, CsvModel):
-        path = folder / model.goals.csv
-        return _of_table(read_goals(path, str(path)), "csv", document)
-    if isinstance(model.goals, NpzModel):
-        path = folder / model.goals.npz
-        return _of_table(read_goal_arrays(path, model.goals.array), "npz", document)
-    given = [goal.name for goal in model.goals]
-    faults = list(twice(given, ("goals",), "goal", document))
-    if not model.goals and "goals" in document.content:
-        message = "at least one goal is needed"
-        faults.append(document.fault("empty", message, ("goals",)))
-    names = tuple(name or str(number) for number, name in enumerate(given, 1))
-    return names, np.array([goal.place for goal in model.goals]).reshape(-1, 3), faults
+def file_axes_faults(
+    model: SolveModel, goals: Goals, turns: Array | None, document: Document
+) -> Iterator[Fault]:
+    """Refuse orientations of a file, where they are taken, likewise."""
+    if turns is not None and model.axes in BY_NAME and isinstance(model.goals, CsvModel | NpzModel):
+        yield _axes_fault(goals.given, document)
 
 
-def _of_table(
-    table: GoalTable, key: str, document: Document
-) -> tuple[tuple[str, ...], Array, list[Fault]]:
+def _axes_fault(path: KeyPath, document: Document) -> Fault:
+    message = "an orientation is in limbik's axes"
+    hint = "leave 'axes' out and give the positions in limbik's axes too"
+    return document.fault("axes", message, path, hint=hint)
+
+
+def _of_table(table: GoalTable, key: str, model: SolveModel, document: Document) -> Goals:
     """Point faults without a place in the file at its key in the scene."""
-    faults = [
+    faults = tuple(
         fault
         if fault.line
         else document.fault(
@@ -82,16 +125,22 @@ def _of_table(
             hint=fault.hint,
         )
         for fault in table.faults
-    ]
-    return tuple(table.names), np.array(table.positions).reshape(-1, 3), faults
+    )
+    places = turned(model, table.positions)
+    return Goals(tuple(table.names), places, table.turns, ("goals", key), faults)
 
 
-def turns_of(model: SolveModel) -> Array | None:
-    """Return the goals' turns [rad], (m, 3); NaN for goals without one, None if no goal has."""
-    turns = [goal.turn for goal in model.goals] if isinstance(model.goals, list) else []
-    if all(turn is None for turn in turns):
-        return None
-    return np.array([np.full(3, np.nan) if turn is None else turn for turn in turns])
+def _listed(goals: Sequence[GoalModel], model: SolveModel, document: Document) -> Goals:
+    given = [goal.name for goal in goals]
+    faults = list(twice(given, ("goals",), "goal", document))
+    if not goals and "goals" in document.content:
+        message = "at least one goal is needed"
+        faults.append(document.fault("empty", message, ("goals",)))
+    names = tuple(name or str(number) for number, name in enumerate(given, 1))
+    places = turned(model, np.array([goal.place for goal in goals]).reshape(-1, 3))
+    turns = [np.full(3, np.nan) if goal.turn is None else goal.turn for goal in goals]
+    has_turns = any(goal.turn_key for goal in goals)
+    return Goals(names, places, np.array(turns) if has_turns else None, faults=tuple(faults))
 
 
 def twice(

@@ -26,6 +26,7 @@ from limbik.core.trajectorymodel import Four, Matrix, TrajectoryModel
 from limbik.core.wording import found_words
 
 FARTHEST = 1e6  # [length]; beyond it float64 no longer tells tolerances apart
+FULLEST = 360.0  # [deg]; largest angle of a turn
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
@@ -76,7 +77,7 @@ def _name(text: str) -> str:
 
 Name = Annotated[str, AfterValidator(_name)]
 Length = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
-Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
+Angle = Annotated[float, Field(ge=-FULLEST, le=FULLEST)]
 Place = Annotated[tuple[Length, Length, Length], BeforeValidator(_three)]
 Turn = Annotated[tuple[Angle, Angle, Angle], BeforeValidator(_three)]
 _DEGREES = {"type": "number", "minimum": -180.0, "maximum": 180.0}
@@ -205,13 +206,19 @@ class PoleModel(Model):
 
 
 class CsvModel(Model):
-    """Goals in a CSV file with the columns name, x, y, z; other columns are passed over."""
+    """Goals in a CSV file with the columns x, y, z, and name and an orientation if there are any.
+
+    An orientation is heading, pitch, bank [deg], or qw, qx, qy, qz. Other columns are passed over.
+    """
 
     csv: Annotated[str, Field(min_length=1, description="path relative to the scene")]
 
 
 class NpzModel(Model):
-    """Goals in an NPZ file, such as `limbik bake` and `limbik trajectory` write."""
+    """Goals in an NPZ file, such as `limbik bake` and `limbik trajectory` write.
+
+    Orientations are an array hpb, (m, 3) [deg], or quaternions, (m, 4), beside the positions.
+    """
 
     npz: Annotated[str, Field(min_length=1, description="path relative to the scene")]
     array: Annotated[

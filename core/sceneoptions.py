@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from limbik.core.errors import Fault
-from limbik.core.scenegoals import axes_faults, turns_of
+from limbik.core.scenegoals import Goals, axes_faults
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.sceneplane import solver_faults
 from limbik.core.settings import joint_tables, narrowing
@@ -12,7 +12,11 @@ from limbik.core.yamlfile import Document, KeyPath
 
 
 def option_faults(
-    names: Sequence[str], limited: Sequence[str], model: SolveModel, document: Document
+    names: Sequence[str],
+    limited: Sequence[str],
+    model: SolveModel,
+    goals: Goals,
+    document: Document,
 ) -> Iterator[Fault]:
     """Check the options that only make sense together with a chain of these joints.
 
@@ -20,11 +24,12 @@ def option_faults(
         names: Of the joints.
         limited: Of those with limits of their own.
         model: What is asked for.
+        goals: The goals.
         document: Where the model came from.
     """
     yield from solver_faults(model, document)
     yield from axes_faults(model, document)
-    yield from _end_faults(model, document)
+    yield from _end_faults(model, goals, document)
     if limited:
         yield from _limit_faults(limited, model, document)
     options, count = model.options, len(names)
@@ -71,14 +76,12 @@ def _limit_faults(limited: Sequence[str], model: SolveModel, document: Document)
         yield document.fault("limit", message, ("options", option), at_key=True)
 
 
-def _end_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
+def _end_faults(model: SolveModel, goals: Goals, document: Document) -> Iterator[Fault]:
     """An end can take over the goals' orientation only where a goal has one."""
     planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if not model.options.end_orientation or planned or model.goals == []:
-        return
-    if turns_of(model) is not None:
+    if not model.options.end_orientation or planned or goals.faults or goals.turns is not None:
         return
     listed = isinstance(model.goals, list)
-    hint = "give the goals a 'rotation'" if listed else "goals of a file have none"
+    hint = "give the goals a 'rotation'" if listed else "see docs/goal-files.md"
     message = "no goal has a rotation that the end could take over"
     yield document.fault("no-rotation", message, ("options", "end_orientation"), hint=hint)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from limbik.core.errors import Fault
+from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SolveModel
 from limbik.core.settings import misfits_in_2d
 from limbik.core.yamlfile import Document, KeyPath
@@ -23,10 +24,9 @@ def solver_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     for key, code, message in misfits_in_2d(model.options):
         place: KeyPath = ("options", key)
         yield document.fault(code, message, place, at_key=code == "solver")
-    if not isinstance(model.goals, list) or (model.pole is not None and model.pole.rotor):
+    if model.pole is None or model.pole.rotor:
         return
-    for number, goal in enumerate(model.goals):
-        if goal.turn is not None and model.pole is not None:
-            message = "nothing turns with this goal; it moves a pole rotor"
-            hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
-            yield document.fault("solver", message, ("goals", number, goal.turn_key), hint=hint)
+    for path in turn_paths(model):
+        message = "nothing turns with this goal; it moves a pole rotor"
+        hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
+        yield document.fault("solver", message, path, hint=hint)

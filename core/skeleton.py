@@ -7,14 +7,14 @@ own, see `limbik.core.formats.SceneInput`; the one here is that of joints writte
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
 from limbik.core.chain import Chain, Joint
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Body, Motion
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.wording import near_match
 
 WORLD: Final = -1
@@ -30,17 +30,23 @@ class Limb(Body):
         before, after: What a joint's angles stand between: its turn relative to its parent in the
             skeleton is `before @ HPB(angles) @ after`, (n, 3, 3).
         written: How many of the joints take the angles; all, or all but the end.
+        turns_end: Whether the end is turned to the goals too, not only carried to them.
     """
 
     at: tuple[int, ...] = field(kw_only=True)
     before: Array = field(kw_only=True)
     after: Array = field(kw_only=True)
     written: int = field(kw_only=True)
+    turns_end: bool = field(default=False, kw_only=True)
 
     @property
     def turned(self) -> tuple[int, ...]:
-        """Joints of the skeleton that a solve turns: all but the end."""
-        return self.at[:-1]
+        """Joints of the skeleton that a solve turns: all but the end, or all."""
+        return self.at if self.turns_end else self.at[:-1]
+
+    def turning_end(self) -> Self:
+        """Return the limb for a solver that turns the end to its goals."""
+        return replace(self, turns_end=True)
 
     def turns(self, angles: Array) -> Array:
         """Return the turns of the first `written` joints, (..., written, 3, 3), for angles [rad].
@@ -129,16 +135,22 @@ class Skeleton:
             raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
         return way[way.index(first) :: -1]
 
-    def seen_from(self, joint: int, places: Array) -> Array:
-        """Return world positions, one a frame, in the axes of a joint of the skeleton's own motion.
+    def seen_from(self, joint: int, limb: Limb) -> Limb:
+        """Return a limb with its goals in the axes of a joint, as the skeleton itself moves.
 
         Args:
             joint: Its index.
-            places: (m, 3) [length].
+            limb: With goals in the world, one a frame, or none.
         """
+        if limb.goals is None:
+            return limb
         positions, rotations = self.motion.world()
-        away = places - positions[:, joint]
-        return np.asarray((rotations[:, joint].swapaxes(-1, -2) @ away[..., None])[..., 0])
+        axes = rotations[:, joint].swapaxes(-1, -2)
+        away = limb.goals - positions[:, joint]
+        turns = limb.goal_turns
+        if turns is not None:
+            turns = matrix_to_hpb(axes @ hpb_to_matrix(turns))
+        return replace(limb, goals=(axes @ away[..., None])[..., 0], goal_turns=turns)
 
     def placed(self, limb: Limb, positions: Array, rotations: Array) -> tuple[Array, Array]:
         """Return where a limb's base is and how it is turned.

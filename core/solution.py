@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 from enum import IntEnum
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,8 @@ from limbik.core.jointlimits import Limits, margin_of
 from limbik.core.rotation import Array
 
 AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
+OF_ALL: Final = ("chain", "continuity", "trace", "planar_limits", "limits")
+"""Fields of solutions that have no leading goal axis."""
 
 
 class Status(IntEnum):
@@ -102,6 +104,11 @@ class Continuity:
         return cls(memory)
 
     @property
+    def known(self) -> bool:
+        """Whether it holds a pose."""
+        return bool(self.memory[3, 0] > 0.0)
+
+    @property
     def aim_base(self) -> Array:
         """Base angles of the aim pose, HPB [rad], (3,)."""
         return np.asarray(self.memory[0])
@@ -188,7 +195,7 @@ class Solution:
         picked: dict[str, Any] = {
             f.name: None if (value := getattr(self, f.name)) is None else value[row]
             for f in fields(self)
-            if f.name not in ("chain", "continuity", "trace", "planar_limits", "limits")
+            if f.name not in OF_ALL
         }
         return picked | {
             "chain": self.chain,

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +22,6 @@ class PlaneFrom(IntEnum):
     def label(self) -> str:
         """The word for tables and JSON."""
         return self.name.lower()
-
-
-PLANAR_ARRAYS: Final = ("plane", "plane_from", "planar_angles", "pole", "rotor", "goal_rotation")
-"""Fields of `PlanarSolution` that have a leading goal axis; the last two may be None."""
 
 
 @dataclass(frozen=True, slots=True)

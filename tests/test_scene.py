@@ -86,7 +86,7 @@ def test_goals_come_from_a_csv_file_beside_the_scene(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("", "1:1: error[csv]: the first line must name the columns name,x,y,z; missing: "),
+        ("", "1:1: error[csv]: the first line must name the columns x,y,z; missing: "),
         ("name,x,y\n", "1:1: error[csv]: the first line must name the columns"),
         ("name,x,y,z\n", "1: error[empty]: the file holds no goals"),
         ("name,x,y,z\na,1,2\n", "2: error[csv]: this line has 3 values, the header has 4"),

@@ -219,7 +219,7 @@ def _csv(name: str, number: int, document: Document, folder: Path) -> tuple[Poin
         else document.fault(fault.code, f"{fault.file}: {fault.message}", ("goals", number, "csv"))
         for fault in table.faults
     ]
-    return Points(np.array(table.positions, np.float64).reshape(-1, 3)), faults
+    return Points(table.positions), faults
 
 
 def _too_many_to_measure(

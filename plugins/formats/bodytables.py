@@ -13,9 +13,11 @@ import numpy as np
 from limbik.core.chain import AXES
 from limbik.core.formats import BodyBake, Values
 from limbik.core.frames import Y_UP
+from limbik.core.goals import PLACE, TURN
 from limbik.core.mirror import side_swapped
 from limbik.core.rotation import Array
 from limbik.core.solution import Solution, Status
+from limbik.plugins.formats.goalturns import turn_cells, turn_quaternions, turn_record
 
 
 def body_rows(
@@ -23,6 +25,7 @@ def body_rows(
     solutions: Mapping[str, Solution],
     times: Sequence[float] | None = None,
     values: Mapping[str, Values] | None = None,
+    goal_turns: Mapping[str, Array] | None = None,
 ) -> str:
     """Write a CSV table, one line a frame: each chain's goal, status, distance, rounds and angles.
 
@@ -31,6 +34,7 @@ def body_rows(
         solutions: Of each chain, with a leading goal axis.
         times: m times [s]; absent = no such column.
         values: A model's own joint values, of chains that have some.
+        goal_turns: How goals are turned, HPB, (m, 3) [rad], of chains that turn by them.
     """
     head = ["name", *([] if times is None else ["time"])]
     columns: list[list[Any]] = [list(names), *([] if times is None else [list(times)])]
@@ -39,9 +43,11 @@ def body_rows(
         joints = [f"{joint} {axis}" for joint in solution.chain.names for axis in AXES]
         own = (values or {}).get(chain)
         model = [f"{name} [{own.unit}]" for name in own.names] if own else []
-        titles = ["x", "y", "z", "status", "distance", "iterations", *joints, *model]
-        head += [f"{chain}: {title}" for title in titles]
+        turns = (goal_turns or {}).get(chain)
+        titles = [*PLACE, *(() if turns is None else TURN), "status", "distance", "iterations"]
+        head += [f"{chain}: {title}" for title in (*titles, *joints, *model)]
         columns += solution.goal.T.tolist()
+        columns += map(list, zip(*turn_cells(turns, len(names)), strict=True))
         columns += [labels(solution), np.asarray(solution.distance).tolist()]
         columns += [np.asarray(solution.iterations).tolist(), *angles.T.tolist()]
         columns += own.rows.T.tolist() if own else []
@@ -76,7 +82,8 @@ def _world(bake: BodyBake) -> tuple[list[str], Array, Array]:
 def write_body_csv(bake: BodyBake) -> str:
     """Write one line a frame."""
     times = [frame * bake.frame_time for frame in range(len(bake.scene.frame_names))]
-    return body_rows(bake.scene.frame_names, bake.solutions, times, _values(bake))
+    names, values = bake.scene.frame_names, _values(bake)
+    return body_rows(names, bake.solutions, times, values, bake.goal_turns)
 
 
 def write_body_json(bake: BodyBake) -> str:
@@ -96,6 +103,8 @@ def write_body_json(bake: BodyBake) -> str:
             "iterations": np.asarray(solution.iterations).tolist(),
             "angles": np.degrees(solution.angles).tolist(),
         }
+        if name in bake.goal_turns:
+            chains[name]["goal_rotations"] = turn_record(bake.goal_turns[name])
         if own := values.get(name):
             rows = {"names": list(own.names), "unit": own.unit, "rows": own.rows.tolist()}
             chains[name]["model_values"] = rows
@@ -133,6 +142,8 @@ def write_body_npz(bake: BodyBake) -> bytes:
             "distance": np.asarray(solution.distance),
             "iterations": np.asarray(solution.iterations),
         }
+        if name in bake.goal_turns:
+            own["quaternions"] = turn_quaternions(bake.goal_turns[name])
         arrays |= {f"{name}/{key}": array for key, array in own.items()}
     for name, values in _values(bake).items():
         arrays[f"{name}/model_names"] = np.array(values.names)

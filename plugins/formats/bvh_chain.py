@@ -14,7 +14,7 @@ The file states no unit; `scale` makes its lengths the scene's.
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -73,12 +73,18 @@ class ClipBody(Body):
         scale: Scene lengths a length of the clip.
         at: Index in the clip of each joint of the chain.
         join: The way back to the clip's rotations.
+        turns_end: Whether the end is turned to the goals too, not only carried to them.
     """
 
     clip: Clip | None = None
     scale: float = 1.0
     at: tuple[int, ...] = ()
     join: Joined | None = None
+    turns_end: bool = False
+
+    def turning_end(self) -> Self:
+        """Return the body for a solver that turns the end to its goals."""
+        return replace(self, turns_end=True)
 
     def motion(self, angles: Array, frame_time: float) -> Motion:
         """Return the whole skeleton's motion, the chain's turns replaced."""
@@ -87,13 +93,13 @@ class ClipBody(Body):
     def baked(self, angles: Array) -> Clip:
         """Return the clip with the chain's angles, HPB (m, n, 3) [rad], in its channels.
 
-        The end joint keeps its channels: a solve does not turn it. So do all other joints.
+        The end joint keeps its channels, unless the solver turns it; so do all other joints.
         """
         if self.clip is None or self.join is None:
             raise ValueError("there is no clip")
         frames = self.clip.frames.copy()
         own = Y_UP.rotations(self.join.own_turns(angles))
-        for k, index in enumerate(self.at[:-1]):
+        for k, index in enumerate(self.at if self.turns_end else self.at[:-1]):
             joint = self.clip.joints[index]
             columns = list(joint.columns[len(joint.moves) :])
             slot = self.join.slots[k]
@@ -216,7 +222,7 @@ def model_joint(joint: BvhJoint, offset: Array) -> ModelJoint:
     if len(joint.turns) == 1:
         axis = Y_UP.points(np.eye(3)[joint.turns[0]])
         return ModelJoint(joint.name, offset, still, "hinge", axis)
-    return ModelJoint(joint.name, offset, still, "free" if joint.turns else "fixed")
+    return ModelJoint(joint.name, offset, still, "free" if len(joint.turns) == 3 else "fixed")
 
 
 def _path(clip: Clip, at: list[int], scale: float) -> tuple[Array, Array]:

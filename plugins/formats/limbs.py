@@ -1,13 +1,14 @@
 """Limbs of a model's skeleton: chains whose angles give the turns of the model's own joints."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 from limbik.core.chain import Chain
 from limbik.core.formats import Values
 from limbik.core.rotation import Array
 from limbik.core.skeleton import Limb, Skeleton, standing
-from limbik.plugins.formats.joining import Joined, ModelJoint, joined
+from limbik.plugins.formats.joining import FIXED, Joined, ModelJoint, joined
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,6 +17,12 @@ class ModelLimb(Limb):
 
     join: Joined = field(kw_only=True)
     unit: str = field(kw_only=True)
+
+    def turning_end(self) -> Self:
+        """Return the limb for a solver that turns the end, unless the model holds it fixed."""
+        if self.join.slots[-1] == FIXED:
+            return self
+        return replace(self, turns_end=True, written=len(self.at))
 
     def values(self, angles: Array) -> Values | None:
         """Return the model's hinge values, where the model has some."""
@@ -32,7 +39,7 @@ def model_limb(
     notes: tuple[str, ...] = (),
     unit: str = "",
 ) -> ModelLimb:
-    """Make a limb of a model's joints, base first; the end keeps its turn.
+    """Make a limb of a model's joints, base first; the end keeps its turn, see `turning_end`.
 
     Args:
         skeleton: Where the limb belongs.

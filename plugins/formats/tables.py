@@ -12,10 +12,12 @@ import numpy as np
 from limbik.core.chain import AXES
 from limbik.core.formats import Bake, Output, Values
 from limbik.core.frames import mirror_hpb
+from limbik.core.goals import PLACE, TURN
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.plugins.formats.bodytables import write_body_csv, write_body_json, write_body_npz
+from limbik.plugins.formats.goalturns import turn_cells, turn_quaternions, turn_record
 
 
 def unmirrored(bake: Bake) -> Array:
@@ -38,7 +40,7 @@ def _times(bake: Bake) -> list[float]:
 
 
 def write_csv(bake: Bake) -> str:
-    """Write one line a frame; its columns name, x, y, z make it a goal file again."""
+    """Write one line a frame; its columns of name and goal make it a goal file again."""
     import csv
 
     solution, values = bake.solution, _values(bake)
@@ -46,7 +48,9 @@ def write_csv(bake: Bake) -> str:
     writer = csv.writer(text, lineterminator="\n")
     angles = [f"{name} {axis}" for name in solution.chain.names for axis in AXES]
     own = [f"{name} [{values.unit}]" for name in values.names] if values else []
-    head = ["name", "time", "x", "y", "z", "status", "distance", "iterations"]
+    turns = bake.goal_turns
+    head = ["name", "time", *PLACE, *(() if turns is None else TURN)]
+    head += ["status", "distance", "iterations"]
     writer.writerow([*head, *angles, *own])
     degrees = np.degrees(solution.angles).reshape(len(solution.goal), -1).tolist()
     rows = values.rows.tolist() if values else [[] for _ in degrees]
@@ -54,14 +58,15 @@ def write_csv(bake: Bake) -> str:
         bake.scene.goal_names,
         _times(bake),
         solution.goal.tolist(),
+        turn_cells(turns, len(solution.goal)),
         _labels(bake),
         np.asarray(solution.distance).tolist(),
         np.asarray(solution.iterations).tolist(),
         degrees,
         rows,
     )
-    for name, time, goal, status, distance, rounds, turned, row in zip(*columns, strict=True):
-        writer.writerow([name, time, *goal, status, distance, rounds, *turned, *row])
+    for name, time, goal, turn, *rest, turned, row in zip(*columns, strict=True):
+        writer.writerow([name, time, *goal, *turn, *rest, *turned, *row])
     return text.getvalue()
 
 
@@ -84,6 +89,8 @@ def write_json(bake: Bake) -> str:
         "angles": np.degrees(solution.angles).tolist(),
         "positions": solution.positions.tolist(),
     }
+    if bake.goal_turns is not None:
+        record["goal_rotations"] = turn_record(bake.goal_turns)
     if values:
         own = {"names": list(values.names), "unit": values.unit, "rows": values.rows.tolist()}
         record["model_values"] = own
@@ -91,7 +98,10 @@ def write_json(bake: Bake) -> str:
 
 
 def write_npz(bake: Bake) -> bytes:
-    """Write arrays: angles (m, n, 3) [rad], positions, rotations, goals, status, distance."""
+    """Write arrays: angles (m, n, 3) [rad], positions, rotations, goals, status, distance.
+
+    Goals with an orientation have it as `quaternions` w, x, y, z, (m, 4), NaN where there is none.
+    """
     solution, values = bake.solution, _values(bake)
     arrays: dict[str, Any] = {
         "joints": np.array(solution.chain.names),
@@ -105,6 +115,8 @@ def write_npz(bake: Bake) -> bytes:
         "distance": np.asarray(solution.distance),
         "iterations": np.asarray(solution.iterations),
     }
+    if bake.goal_turns is not None:
+        arrays["quaternions"] = turn_quaternions(bake.goal_turns)
     if values:
         arrays |= {"model_names": np.array(values.names), "model_values": values.rows}
     content = io.BytesIO()

@@ -51,10 +51,11 @@ def _alone(part: Part, found: Sequence[BodySolution], solutions: Sequence[Soluti
     pole = part.scene.pole
     if pole is not None:
         pole = _pole(part, pole, found, solutions)
-    turns = part.scene.goal_turns
-    if turns is not None:
+    turns = None
+    if part.scene.goal_turns is not None:
         axes = np.array([s.chain.base_rotation for s in solutions])
-        turns = matrix_to_hpb(axes[0] @ axes.swapaxes(-1, -2) @ hpb_to_matrix(turns))
+        turned = hpb_to_matrix([body.goal_turns[part.name] for body in found])
+        turns = matrix_to_hpb(axes[0] @ axes.swapaxes(-1, -2) @ turned)
     return replace(part.scene, chain=chain, goals=goals, pole=pole, goal_turns=turns)
 
 

@@ -116,26 +116,14 @@ class ChainDrawing:
         self.limb = Limb(scene, name, len(shown.positions), size)
         self.colours = dict(LINES)
         self.lines = {
-            line: scene.add_line_segments(
-                f"{name}/{line.replace(' ', '-')}",
-                NOWHERE,
-                colour,
-                thickness=2.5,
-                thickness_units="screen",
-                visible=line in SHOWN_AT_FIRST and not plain,
+            line: add_lines(
+                scene, f"{name}/{line.replace(' ', '-')}", 2.5, line in SHOWN_AT_FIRST and not plain
             )
-            for line, colour in LINES.items()
+            for line in LINES
         }
-        thin: dict[str, Any] = {"thickness_units": "screen"}
-        self._ranges = scene.add_line_segments(
-            f"{name}/limits", NOWHERE, (0, 0, 0), thickness=1.5, **thin
-        )
-        self._hands = scene.add_line_segments(
-            f"{name}/hands", NOWHERE, (0, 0, 0), thickness=4.0, **thin
-        )
-        self._rotor = scene.add_line_segments(
-            f"{name}/rotor", NOWHERE, (0, 0, 0), thickness=3.0, **thin
-        )
+        self._ranges = add_lines(scene, f"{name}/limits", 1.5)
+        self._hands = add_lines(scene, f"{name}/hands", 4.0)
+        self._rotor = add_lines(scene, f"{name}/rotor", 3.0)
         self._cone: Any = None
         self._cone_is: tuple[Any, ...] = ()
         self._scene, self._name = scene, name
@@ -255,9 +243,7 @@ class SkeletonDrawing:
             above = session.body.skeleton.parents
             pairs = [(parent, joint) for joint, parent in enumerate(above) if parent >= 0]
             self._pairs = [pair for pair in pairs if pair not in drawn]
-        self._lines = scene.add_line_segments(
-            "/skeleton", NOWHERE, REST, thickness=3.0, thickness_units="screen"
-        )
+        self._lines = add_lines(scene, "/skeleton", 3.0)
 
     def update(self, session: Session) -> None:
         """Draw the last solve."""
@@ -291,7 +277,23 @@ def line_colours(colours: ArrayLike) -> NDArray[np.uint8]:
     return np.repeat(np.round(linear).astype(np.uint8)[:, None], 2, axis=1)
 
 
-def _set(handle: Any, points: Array, colours: Array | None = None) -> None:
+def add_lines(scene: SceneApi, name: str, thickness: float, visible: bool = True) -> Any:
+    """Add a node of lines, without any yet.
+
+    It is made with an array of colours: the page shows none of a node that was made with one colour
+    and got an array later.
+    """
+    return scene.add_line_segments(
+        name,
+        NOWHERE,
+        line_colours(np.zeros((1, 3))),
+        thickness=thickness,
+        thickness_units="screen",
+        visible=visible,
+    )
+
+
+def _set(handle: Any, points: Array, colours: Array) -> None:
     """Give a node of lines other points, and a colour for each of them."""
-    handle.colors = line_colours(np.zeros((len(points), 3)) if colours is None else colours)
+    handle.colors = line_colours(colours)
     handle.points = points.astype(np.float32)
