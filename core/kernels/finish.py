@@ -5,6 +5,7 @@ from math import isfinite, isnan
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import place_from, renew_angles, set_angles
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.reach import least_reach
 from limbik.core.kernels.rotation import Vector, clamp, norm, store_vector, subtract, vector
 from limbik.core.slots import call_finish
 
@@ -105,5 +106,5 @@ def spans(goal: Vector, tolerance: float, pose: Pose) -> bool:
             longest = max(longest, bone)
         last = joint
     distance = norm(subtract(goal, vector(pose.positions, max(first, 0))))
-    inner = max(2.0 * longest - total, 0.0)
+    inner = least_reach(total, longest)
     return inner - tolerance < distance < total + tolerance

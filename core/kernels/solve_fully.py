@@ -9,12 +9,10 @@ from limbik.core.jit import entry
 from limbik.core.kernels.choose import end_and_choose
 from limbik.core.kernels.frames import new_pose
 from limbik.core.kernels.layout import Body, Choice, Options, Plugs
-from limbik.core.kernels.limit import load_own
 from limbik.core.kernels.orient import orient_end
-from limbik.core.kernels.rotation import norm, subtract, vector
+from limbik.core.kernels.rotation import copy_rows, norm, subtract, vector
 from limbik.core.kernels.solve3d import (
     FAILED,
-    copy_rows,
     lead,
     settle_pose,
     write_numbers,
@@ -45,7 +43,7 @@ def solve_fully(
     then how they are turned, HPB [rad], or NaN.
     """
     pose = new_pose(body.offsets.shape[0])
-    load_own(plugs.own, pose.own)
+    copy_rows(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
