@@ -13,7 +13,7 @@ from math import inf, pi
 from limbik.core.jit import kernel
 from limbik.core.kernels.finish import end_solve
 from limbik.core.kernels.frames import clamp_angles, distance_to, place_from, set_angles
-from limbik.core.kernels.layout import Body, Choice, Options, Plugs, Pose
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND, Body, Choice, Options, Plugs, Pose
 from limbik.core.kernels.limit import margin, put, taken
 from limbik.core.kernels.memory import angles_before
 from limbik.core.kernels.own import KEPT, LIMIT
@@ -82,7 +82,7 @@ def end_and_choose(
         Whether the finish gave finite numbers only, and the stages traced.
     """
     best, share = inf, 0.5
-    said, nearest = 0.0, inf
+    in_vain, nearest = 0.0, inf
     candidates = choice.candidates + PULLS if choice.by != 0 else 0
     for number in range(-1, candidates):
         pulls = number >= choice.candidates
@@ -95,7 +95,7 @@ def end_and_choose(
         reached = distance_to(goal, pose) < options.tolerance
         if number < 0:
             stages = record(stages, pose, trace)
-            said, nearest = pose.verdict[0], pose.verdict[1]
+            in_vain, nearest = pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND]
             if choice.by == 0 or not reached:
                 return True, stages
             _keep(FOUND, pose)
@@ -108,7 +108,7 @@ def end_and_choose(
             share *= 0.5
             if share < LEAST_PULL:
                 break
-    pose.verdict[0], pose.verdict[1] = said, nearest
+    pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND] = in_vain, nearest
     for joint in range(body.offsets.shape[0]):
         set_angles(joint, taken(pose.own[joint], BEST), pose)
     place_from(0, body, pose)

@@ -19,7 +19,7 @@ from limbik.core.kernels.frames import (
     renew_angles,
     set_angles,
 )
-from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND, Bend, Body, Options, Plugs, Pose
 from limbik.core.kernels.limit import limits_failed
 from limbik.core.kernels.memory import AIM_BASE, AIM_ROOT, FLAGS, HAS_POSE, angles_before, has_pose
 from limbik.core.kernels.memory import ANGLES as KEPT_ANGLES
@@ -109,7 +109,7 @@ def solve_goals(
         if led.onward and plugs.finish != 0:
             if not end_solve(led.pursued, body, options, plugs, pose):
                 failed = FAILED + 4
-            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            pose.verdict[LEAST_FOUND] += norm(subtract(goal, led.pursued))
             stages = record(stages, pose, trace)
         settle_pose(body, options, fk, memory, pose)
         write_numbers(goal, led, failed, options, pose, numbers[row])
@@ -140,7 +140,7 @@ class Led(NamedTuple):
     stages: int
     """Traced so far."""
     onward: bool
-    """Whether stages may follow that go on from CCD."""
+    """Whether a finish may follow: no strategy failed, and CCD was asked for."""
 
 
 @kernel
@@ -154,9 +154,20 @@ def lead(
     pose: Pose,
     trace: Array,
 ) -> Led:
-    """Take one goal through all stages up to the last round of CCD."""
+    """Take one goal through all stages up to the last round of CCD.
+
+    Args:
+        goal: World [length].
+        body: The chain.
+        options: Of the solve.
+        plugs: Of the solve.
+        fk: FK offsets, HPB, (n, 3) [rad].
+        memory: Continuity, (n + 4, 3); keeps the aim pose and the bend vector.
+        pose: OUT: how CCD leaves it.
+        trace: OUT: the stages, as far as it has room.
+    """
     bend_world, pursued = (0.0, 0.0, 0.0), goal
-    pose.verdict[0], pose.verdict[1] = 0.0, inf
+    pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND] = 0.0, inf
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
@@ -378,4 +389,4 @@ def write_numbers(
     numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = led.bend
     local = rotate_back(matrix(pose.world, options.root), led.bend)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
-    numbers[NEAREST] = min(distance, pose.verdict[1])
+    numbers[NEAREST] = min(distance, pose.verdict[LEAST_FOUND])

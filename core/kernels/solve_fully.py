@@ -8,7 +8,7 @@ from math import isnan
 from limbik.core.jit import entry
 from limbik.core.kernels.choose import end_and_choose
 from limbik.core.kernels.frames import new_pose
-from limbik.core.kernels.layout import Body, Choice, Options, Plugs
+from limbik.core.kernels.layout import LEAST_FOUND, Body, Choice, Options, Plugs
 from limbik.core.kernels.orient import orient_end
 from limbik.core.kernels.rotation import copy_rows, norm, subtract, vector
 from limbik.core.kernels.solve3d import (
@@ -58,7 +58,7 @@ def solve_fully(
             )
             if not ended:
                 failed = FAILED + 4
-            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            pose.verdict[LEAST_FOUND] += norm(subtract(goal, led.pursued))
         if led.onward and choice.end_orientation > 0.0 and goals.shape[1] > 3:
             turn = (goals[row, 3], goals[row, 4], goals[row, 5])
             if not isnan(turn[0]):
