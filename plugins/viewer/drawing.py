@@ -48,6 +48,7 @@ class Limb:
         self, scene: SceneApi, name: str, count: int, size: float, colour: Colour = BONE
     ) -> None:
         self._size, still = size, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+        self._drawn: tuple[Array, set[int]] = np.full((count, 3), np.nan), set()
         somewhere = np.zeros((count, 3))
         self._bones = scene.add_batched_meshes_simple(
             f"{name}/bones",
@@ -75,6 +76,9 @@ class Limb:
             positions: World, (n, 3) [length].
             blocking: Indices of joints.
         """
+        if np.array_equal(positions, self._drawn[0]) and blocking == self._drawn[1]:
+            return
+        self._drawn = positions, blocking
         places = to_page(positions)
         ways = places[1:] - places[:-1]
         lengths = np.linalg.norm(ways, axis=1)

@@ -58,6 +58,7 @@ class Gizmo:
         self._rotates = False
         self._visible = True
         self._held = False
+        self._is_put = False  # whether the handle is where it was put
         far = (-FAR, FAR)
         self._handle = server.scene.add_transform_controls(
             name,
@@ -75,6 +76,7 @@ class Gizmo:
 
     def _dragged(self, event: TransformControlsEvent) -> None:
         """Take the newest pose; one that is not finite, or is refused, is put back."""
+        self._is_put = False
         if event.phase == "start":
             self._held = True
             return
@@ -90,8 +92,11 @@ class Gizmo:
 
     def put(self, place: Array, turn: Array | None = None) -> None:
         """Put it somewhere, world; while somebody holds it only what goes with it moves."""
-        self._place = place
-        self._turn = self._turn if turn is None else turn
+        turn = self._turn if turn is None else turn
+        same = np.array_equal(place, self._place) and np.array_equal(turn, self._turn)
+        if same and self._is_put:
+            return
+        self._place, self._turn, self._is_put = place, turn, not self._held
         at = to_page(place)
         self._ball.position = at
         self._label.position = at + 0.35 * self._size * UP

@@ -153,7 +153,8 @@ class Page:
                 gizmo.put(chained.to_world(chained.goal), turn)
                 pole = self.poles[name]
                 pole.visible = chained.setup.in_plane
-                pole.put(chained.pole(chained.setup))
+                if pole.visible:
+                    pole.put(chained.pole(chained.setup))
             compared = self.session.compared(shown)
             self._skeleton.update(self.session)
             self._show_compared(compared)
