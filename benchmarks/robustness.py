@@ -138,8 +138,8 @@ def scenarios(share: float) -> Rows:
     for path in SCENES:
         scene = read_scene(path, REGISTRY)
         ours = run_scene(scene, REGISTRY)
-        bare_solver = ours.solver.altered(**BARE)
-        bare = replace(ours, solver=bare_solver, solution=ours.solve(ours.goals, bare_solver))
+        solver = ours.own_solver("bare document").altered(**BARE)
+        bare = replace(ours, solver=solver, solution=ours.solve(ours.goals, ours.turns, solver))
         for title, run in ((path.stem, ours), ("... bare document", bare)):
             yield (title, _held(scene, run), *(_value(run, name) for name in names))
 

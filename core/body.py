@@ -232,11 +232,7 @@ class BodySolver:
             if isinstance(solver, Solver2D):
                 solver = solver.with_pole(origin + axes @ np.array(solver.pole.position))
         if turned is not None:
-            found.goal_turns[chain.name] = turned
-            if isinstance(solver, WholeSolver):
-                asked["goal_rotation"] = hpb_to_matrix(turned)
-            else:
-                asked["goal_turn"] = turned
+            found.goal_turns[chain.name] = asked["goal_turn"] = turned
         solution = solver.solve(goal, **asked)
         found.solutions[chain.name] = solution
         if solution.continuity is not None:

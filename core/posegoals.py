@@ -15,6 +15,7 @@ from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
+from limbik.core.strategy import mirrored
 from limbik.core.whole import OWN_SOLVERS, Batch, WholeSolution, prepare
 from limbik.core.yamlfile import Document
 
@@ -66,7 +67,9 @@ class PoseBatch(ABC):
         """
 
 
-def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) -> Solution:
+def solve_turned(
+    batch: Batch, goals: Array, turns: Array | None, follow: bool, near: Array | None = None
+) -> Solution:
     """Solve goals with a whole solver; one that does not turn the end leaves orientations aside.
 
     Args:
@@ -74,10 +77,11 @@ def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) 
         goals: World positions, (m, 3) [length].
         turns: World orientations, HPB, (m, 3) [rad]; NaN for goals without, None if none has one.
         follow: Whether each is solved from the pose of the one before.
+        near: Pose to start from, HPB, (n, 3) [rad]; the rest pose if absent.
     """
     if turns is None or not isinstance(batch, PoseBatch):
-        return batch(goals, follow)
-    return batch.solve_poses(goals, hpb_to_matrix(turns), follow)
+        return batch(goals, follow, near)
+    return batch.solve_poses(goals, hpb_to_matrix(turns), follow, near)
 
 
 class WholeSolver:
@@ -94,43 +98,64 @@ class WholeSolver:
     """
 
     def __init__(self, bound: Bound, chain: Chain, settings: Settings) -> None:
-        self._bound, self._settings = bound, settings
-        self.chain = chain
+        self._bound = bound
+        self.chain, self.settings = chain, settings
         self._batch = prepare(bound, chain, settings)
+
+    @property
+    def name(self) -> str:
+        """Name of the solver."""
+        return self._bound.name
 
     @property
     def turns_end(self) -> bool:
         """Whether it follows a goal's orientation."""
         return isinstance(self._batch, PoseBatch)
 
+    @property
+    def angle(self) -> float | None:
+        """Angle to a goal's orientation that counts as reached [rad]; None if it follows none."""
+        return self._batch.angle if isinstance(self._batch, PoseBatch) else None
+
     def moved(self, position: Array, rotation: Array) -> "WholeSolver":
         """Return the solver for the chain with its base elsewhere."""
-        return WholeSolver(self._bound, self.chain.moved(position, rotation), self._settings)
+        return WholeSolver(self._bound, self.chain.moved(position, rotation), self.settings)
+
+    def mirrored(self) -> "WholeSolver":
+        """Return the solver of the chain mirrored in the world's YZ plane (M-14)."""
+        from limbik.core.mirror import mirrored_settings
+
+        image = type(self._bound.params)(**mirrored(self._bound.params))
+        settings = mirrored_settings(self.settings, {})
+        return WholeSolver(replace(self._bound, params=image), self.chain.mirrored(), settings)
 
     def solve(
         self,
         goal: Array,
         *,
-        goal_rotation: Array | None = None,
+        goal_turn: Array | None = None,
         fk_offsets: Array | None = None,
         continuity: Continuity | None = None,
         trace: bool = False,
     ) -> Solution:
-        """Solve one goal.
-
-        A solver of pose goals follows the orientation too, (3, 3) or NaN. Of a continuity the pose
-        counts, which the solver starts from. Such solvers have no use for the rest.
-        """
-        rows = np.asarray(goal, np.float64).reshape(1, 3)
+        """Solve one goal, from the pose of a continuity; what else is given is of no use here."""
         near = continuity.angles if continuity is not None and continuity.known else None
-        follow = near is not None
-        if isinstance(self._batch, PoseBatch):
-            turned = None if goal_rotation is None else goal_rotation[None]
-            found: Solution = self._batch.solve_poses(rows, turned, follow, near)
-        else:
-            found = self._batch(rows, follow, near)
-        one = found.single(0)
-        return replace(one, continuity=Continuity.from_pose(one.angles))
+        turns = None if goal_turn is None else goal_turn[None]
+        goals = np.asarray(goal, np.float64)[None]
+        found = solve_turned(self._batch, goals, turns, near is not None, near).single(0)
+        return replace(found, continuity=Continuity.from_pose(found.angles))
+
+    def solve_many(
+        self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None
+    ) -> Solution:
+        """Solve goals, each on its own; see `solve_turned`."""
+        return solve_turned(self._batch, goals, goal_turns, False)
+
+    def follow(
+        self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None
+    ) -> Solution:
+        """Solve goals as a path; see `solve_turned`."""
+        return solve_turned(self._batch, goals, goal_turns, True)
 
 
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:

@@ -243,17 +243,6 @@ def build_scene(
     )
 
 
-def require_own_solver(scene: Scene, what: str) -> None:
-    """Refuse a scene that chooses a solver of a plug-in, where only limbik's own will do.
-
-    Raises:
-        SceneError: It does.
-    """
-    if scene.solver is not None:
-        message = f"{what} needs limbik's own solver, 3d, not '{scene.solver.name}'"
-        raise SceneError([scene.document.fault("choice", message, (SOLVER.name,))])
-
-
 def require_goals(scene: Scene) -> None:
     """Refuse a scene that has a trajectory and no goals.
 

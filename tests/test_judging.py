@@ -126,7 +126,7 @@ def test_chatter_counts_reversals_of_limited_axes_only() -> None:
     angles[::2, 0, 0] = np.radians(50.0)
     shaken = with_angles(judged, angles)
     assert limits.chatter(shaken) == pytest.approx(59 / (61 / 60))
-    with pytest.raises(NotJudged, match="no joint has a limit"):
+    with pytest.raises(NotJudged, match="no joint has a range"):
         limits.chatter(run(circle()))
 
 

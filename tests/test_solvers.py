@@ -312,13 +312,6 @@ def test_bake_uses_the_scene_s_solver() -> None:
     np.testing.assert_array_equal(baked.solution.angles, batch(scene)(scene.goals, True).angles)
 
 
-def test_judge_refuses_a_scene_with_another_solver() -> None:
-    from limbik.plugins.judging.run import run_scene
-
-    with pytest.raises(SceneError, match=r"limbik judge needs limbik's own solver, 3d, not"):
-        run_scene(read_scene(CONFIGS / "lambda-leg.yaml", REGISTRY), REGISTRY)
-
-
 def test_the_schema_offers_the_solvers() -> None:
     from limbik.core.schema import scene_schema
 

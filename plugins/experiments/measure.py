@@ -9,7 +9,7 @@ from limbik.core.errors import LimbikError
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution, Status
-from limbik.core.solving import scene_solver
+from limbik.core.solving import single_solver
 from limbik.plugins.experiments.trials import Trial
 from limbik.plugins.judging.catalogue import BY_NAME, Metric
 from limbik.plugins.judging.run import NotJudged, Run
@@ -43,19 +43,16 @@ def measured(
 ) -> dict[str, float]:
     """Return metrics by name; NaN where one says nothing about this goal set.
 
-    Measures of a motion say nothing about goals in no order, and those that solve again know only
-    limbik's own solver, not one of a plug-in.
+    Measures of a motion say nothing about goals in no order.
     """
     if solution is None:
         return dict.fromkeys(metrics, nan)
-    # For a plug-in's solver it stands for chain and options alone.
-    solver = scene_solver(scene, registry)
+    solver = single_solver(scene, registry)
     goal_set, offsets = trial.goal_set, scene.fk_offsets
     run = Run(solver, scene.goals, offsets, goal_set.follow, goal_set.rate, solution)
-    is_own = scene.solver is None
 
     def value(metric: Metric) -> float:
-        if (metric.on_path and not goal_set.is_path) or (metric.again and not is_own):
+        if metric.on_path and not goal_set.is_path:
             return nan
         try:
             return metric.measure(run)

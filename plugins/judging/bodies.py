@@ -31,8 +31,8 @@ def judge_body(scene: BodyScene, registry: Registry | None = None) -> dict[str, 
         registry: Where the strategies are looked up; a new one if absent.
 
     Raises:
-        SceneError: A `judge` section names a metric that does not exist, a chain has a solver of a
-            plug-in, or a pole that its base moves against.
+        SceneError: A `judge` section names a metric that does not exist, or a chain has a pole that
+            its base moves against.
     """
     found = solve_body(scene, registry)
     solutions = chain_solutions(found)

@@ -33,7 +33,6 @@ class Metric:
         meaning: One line.
         measure: Gives the value, or raises `NotJudged`.
         on_path: Whether it says something only where the goals are a path.
-        again: Whether it solves more than the path itself, in ways limbik's own solver knows.
     """
 
     name: str
@@ -42,7 +41,6 @@ class Metric:
     meaning: str
     measure: Callable[[Run], float]
     on_path: bool = False
-    again: bool = False
 
 
 def _at(
@@ -79,7 +77,6 @@ METRICS: tuple[Metric, ...] = (
         "% L",
         "miss beyond the best of long solves",
         _times(100, limit_error),
-        again=True,
     ),
     Metric(
         "gain_p95", "M3", "rad/L", "joint turn over the goal's way", _at(95, gains), on_path=True
@@ -97,7 +94,7 @@ METRICS: tuple[Metric, ...] = (
         "acceleration_p99", "M4", "°/s²", "of a joint", _at(99, accelerations, _DEG), on_path=True
     ),
     Metric("pops", "M5", "", "turns that stand out from those around", pops, on_path=True),
-    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True, again=True),
+    Metric("flips", "M6", "", "jumps that no finer path removes", flips, on_path=True),
     Metric(
         "roughness",
         "M7",
@@ -114,7 +111,6 @@ METRICS: tuple[Metric, ...] = (
         "°",
         "pose change by the order of goals",
         _times(_DEG, history),
-        again=True,
     ),
     Metric(
         "drift",
@@ -122,7 +118,6 @@ METRICS: tuple[Metric, ...] = (
         "°",
         "first pose after the path, 1000 times",
         _times(_DEG, drift),
-        again=True,
     ),
     Metric(
         "round_trip",
@@ -130,9 +125,8 @@ METRICS: tuple[Metric, ...] = (
         "°",
         "pose change, IK to FK and back",
         _times(_DEG, round_trip),
-        again=True,
     ),
-    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry, again=True),
+    Metric("asymmetry", "M13", "L", "distance from the mirror image", asymmetry),
     Metric(
         "swivel_error",
         "M14",
@@ -151,9 +145,7 @@ METRICS: tuple[Metric, ...] = (
     Metric("curl", "M16", "", "last joint's share of the bend, 1 = even", curl),
     Metric("unevenness", "M17", "", "spread of the joints' bends", unevenness),
     Metric("s_shape", "M17", "L", "change of the bend's side from the middle", s_shape),
-    Metric(
-        "mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour, again=True
-    ),
+    Metric("mix_detour", "M18", "", "way from IK to FK over the straight one", mix_detour),
     Metric(
         "rate_dependence",
         "M19",
@@ -170,7 +162,6 @@ METRICS: tuple[Metric, ...] = (
         "ms",
         "95 % of single solves are faster",
         _times(1000.0, latency),
-        again=True,
     ),
 )
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from limbik.core.jointlimits import margin_of
 from limbik.core.rotation import wrap
 from limbik.core.solution2d import PlanarSolution
 from limbik.plugins.judging.motion import joint_turns
@@ -11,24 +12,29 @@ STILL = np.radians(0.02)  # smaller turns are rest [rad]
 
 
 def limit_excess(run: Run) -> float:
-    """Largest angle beyond a range [rad]."""
+    """Largest angle beyond a range, or beyond a joint's limit of its own [rad]."""
     angles, low, high = run.solution.angles, run.chain.low, run.chain.high
     if isinstance(run.solution, PlanarSolution):
         angles, (low, high) = run.solution.planar_angles, run.solution.planar_limits
-    over = np.maximum(low - angles, angles - high)
-    return max(0.0, float(over.max()))
+    over = float(np.maximum(low - angles, angles - high).max())
+    for joint, limit in enumerate(run.solution.limits or ()):
+        if limit is not None:
+            mirrored = run.chain.joints[joint].mirrored
+            margins = [margin_of(limit, mirrored, pose) for pose in angles[:, joint]]
+            over = max(over, -min(margins))
+    return max(0.0, over)
 
 
 def chatter(run: Run) -> float:
     """Most reversals of a joint's axis a second, both motions above 0.02°, of limited axes."""
     joint_turns(run)
-    if not run.is_limited:
-        raise NotJudged("no joint has a limit")
     angles, low, high = run.solution.angles, run.chain.low, run.chain.high
     if isinstance(run.solution, PlanarSolution):
         angles, (low, high) = run.solution.planar_angles, run.solution.planar_limits
     steps = wrap(np.diff(angles, axis=0))
     limited = np.isfinite(high) & (high > low)
+    if not limited.any():
+        raise NotJudged("no joint has a range")
     turned = (steps[1:] * steps[:-1] < 0.0) & (np.abs(steps[1:]) > STILL)
     turned &= np.abs(steps[:-1]) > STILL
     seconds = len(run.goals) / run.rate

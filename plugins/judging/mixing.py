@@ -10,9 +10,9 @@ SHARES = np.linspace(0.0, 1.0, 21)
 def mix_detour(run: Run) -> float:
     """Way of the end from IK to FK pose over their distance, at the path's middle goal [-]."""
     goal = run.goals[len(run.goals) // 2]
-    ends = []
+    own, ends = run.own_solver("mix of IK and FK"), []
     for share in SHARES.tolist():
-        solver = run.solver.altered(fk_mix=share)
+        solver = own.altered(fk_mix=share)
         ends.append(solver.solve(goal, fk_offsets=run.fk_offsets).positions[-1])
     places = np.array(ends)
     apart = float(np.linalg.norm(places[-1] - places[0]))

@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from limbik.core.posegoals import WholeSolver
 from limbik.core.rotation import Array
+from limbik.core.solver import Solver
 from limbik.plugins.judging.run import NotJudged, Run
 
 STARTS = ("nth-root", "solved-arc", "uniform-arc")
@@ -18,6 +20,11 @@ def limit_error(run: Run) -> float:
     """
     if not run.is_limited:
         raise NotJudged("no joint has a limit; see excess_error")
+    first = run.solver
+    if isinstance(first, WholeSolver):
+        if run.turns is not None and first.turns_end:
+            raise NotJudged("a pose weighs its orientation against the miss")
+        first = Solver(run.chain, run.settings)
     best: Array = np.full(len(run.goals), np.inf)
     for start in STARTS:
         given: dict[str, Any] = {
@@ -27,7 +34,7 @@ def limit_error(run: Run) -> float:
             "finish": "newton",
         }
         given |= {"tolerance": min(run.settings.tolerance, 1e-6 * run.reach)}
-        solver = run.solver.altered(**given)
+        solver = first.altered(**given)
         found = solver.solve_many(run.goals, fk_offsets=run.fk_offsets)
         best = np.minimum(best, np.asarray(found.distance))
     miss = np.asarray(run.solution.distance) - best

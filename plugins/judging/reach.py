@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from limbik.core.motion import turn_between
 from limbik.core.pose import forward_kinematics
-from limbik.core.rotation import Array
+from limbik.core.posegoals import WholeSolver
+from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.solution import Status
 from limbik.plugins.judging.run import NotJudged, Run
 
@@ -35,7 +37,11 @@ def excess_errors(run: Run) -> Array:
 
 def false_statuses(run: Run) -> float:
     """Goals whose status contradicts the pose: run through forward kinematics, compared anew."""
-    positions, _ = forward_kinematics(run.chain, run.solution.angles)
-    miss = np.linalg.norm(positions[:, -1] - run.goals, axis=1)
+    positions, rotations = forward_kinematics(run.chain, run.solution.angles)
+    is_met = np.linalg.norm(positions[:, -1] - run.goals, axis=1) < run.settings.tolerance
+    angle = run.solver.angle if isinstance(run.solver, WholeSolver) else None
+    if run.turns is not None and angle is not None:
+        left = turn_between(rotations[:, -1], hpb_to_matrix(run.turns))
+        is_met &= ~(left >= angle)  # a goal without an orientation, NaN, leaves none
     says = np.asarray(run.solution.status) == Status.REACHED
-    return float((says != (miss < run.settings.tolerance)).sum())
+    return float((says != is_met).sum())

@@ -5,6 +5,7 @@ import numpy as np
 from limbik.core.errors import InputError
 from limbik.core.match import Match, match_fk, match_ik
 from limbik.core.rotation import Array
+from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.plugins.judging.run import NotJudged, Run, pose_difference
 
@@ -20,23 +21,24 @@ def round_trip(run: Run) -> float:
     """
     if isinstance(run.solver, Solver2D):
         raise NotJudged("the pole of the 2D solver is not matched")
+    solver = run.own_solver("mix of IK and FK")
     rows = np.unique(np.linspace(0, len(run.goals) - 1, MOST).round().astype(int))
-    return max(_turn(run, run.goals[row], run.solution.angles[row]) for row in rows)
+    return max(_turn(run, solver, run.goals[row], run.solution.angles[row]) for row in rows)
 
 
-def _turn(run: Run, goal: Array, pose: Array) -> float:
-    found = _matched(run, pose)
+def _turn(run: Run, first: Solver, goal: Array, pose: Array) -> float:
+    found = _matched(first, pose)
     solver, offsets, worst = found.solver, match_fk(run.chain, pose), found.difference
     for mix in MIXES:
         mixed = solver.altered(fk_mix=mix, fk_strength=0.0)
         angles = mixed.solve(goal, fk_offsets=offsets).angles
         worst = max(worst, pose_difference(run, angles, pose))
-    back = _matched(run, angles)
+    back = _matched(first, angles)
     return max(worst, back.difference, pose_difference(run, back.solution.angles, pose))
 
 
-def _matched(run: Run, pose: Array) -> Match:
+def _matched(solver: Solver, pose: Array) -> Match:
     try:
-        return match_ik(run.solver, pose)
+        return match_ik(solver, pose)
     except InputError as why:
         raise NotJudged(f"IK is not matched to this pose: {why}") from None

@@ -7,14 +7,15 @@ import numpy as np
 
 from limbik.core.chain import Chain
 from limbik.core.motion import turn_between
+from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scene import Scene, require_goals, require_own_solver
+from limbik.core.scene import Scene, require_goals
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution
 from limbik.core.solver import Solver
-from limbik.core.solving import scene_solver, solve_part
+from limbik.core.solving import single_solver, solve_goals
 
 RATE = 60.0  # goals a second where a scene gives no rate
 
@@ -28,22 +29,24 @@ class Run:
     """A solved path of m goals of a chain of n joints.
 
     Attributes:
-        solver: What solved it; measures that replay the path use it again.
+        solver: What solved it, limbik's own or a plug-in's; measures that replay the path use it
+            again.
         goals: (m, 3) [length].
         fk_offsets: (n, 3) [rad].
         follow: Whether each goal was solved from the pose before it.
         rate: Goals a second [1/s].
         solution: With a leading goal axis.
-        turned: Whether the goals turn a pole rotor.
+        turns: How the goals are turned, HPB, (m, 3) [rad], NaN for goals without; None if nothing
+            turns by them.
     """
 
-    solver: Solver
+    solver: Solver | WholeSolver
     goals: Array
     fk_offsets: Array
     follow: bool
     rate: float
     solution: Solution
-    turned: bool = False
+    turns: Array | None = None
 
     @property
     def chain(self) -> Chain:
@@ -77,19 +80,31 @@ class Run:
         """Whether any joint before the end has a limit."""
         if isinstance(self.solution, PlanarSolution):
             return bool(np.isfinite(self.solution.planar_limits).any())
-        return bool(np.isfinite(self.chain.high[:-1]).any())
+        return bool(np.isfinite(self.chain.high[:-1]).any() or any(self.solution.limits or ()))
 
-    def solve(self, goals: Array, solver: Solver | None = None) -> Solution:
+    def solve(
+        self, goals: Array, turns: Array | None, solver: Solver | WholeSolver | None = None
+    ) -> Solution:
         """Solve other goals the way the scene does.
 
-        Raises:
-            NotJudged: The goals turn a rotor, and other goals have no turns.
+        Args:
+            goals: (k, 3) [length].
+            turns: How they are turned, HPB, (k, 3) [rad], or None.
+            solver: Another one than the scene's.
         """
-        if self.turned:
-            raise NotJudged("goals that turn a pole rotor are not solved in another order")
         chosen = self.solver if solver is None else solver
         many = chosen.follow if self.follow else chosen.solve_many
-        return many(goals, fk_offsets=self.fk_offsets)
+        return many(goals, goal_turns=turns, fk_offsets=self.fk_offsets)
+
+    def own_solver(self, what: str) -> Solver:
+        """Return limbik's own solver, for what only that one knows.
+
+        Raises:
+            NotJudged: A plug-in's solved the path.
+        """
+        if isinstance(self.solver, Solver):
+            return self.solver
+        raise NotJudged(f"the solver {self.solver.name} knows no {what}")
 
 
 def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
@@ -100,12 +115,11 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
         registry: Where the strategies are looked up; a new one if absent.
     """
     rate = RATE if scene.judge is None else scene.judge.rate
-    require_own_solver(scene, "limbik judge")
     require_goals(scene)
-    solver = scene_solver(scene, registry)
-    solution = solve_part(solver, scene, slice(None))
-    turned = scene.goal_turns is not None
-    return Run(solver, scene.goals, scene.fk_offsets, scene.follow, rate, solution, turned)
+    solver = single_solver(scene, registry)
+    solution = solve_goals(scene, registry)
+    offsets = scene.fk_offsets
+    return Run(solver, scene.goals, offsets, scene.follow, rate, solution, scene.goal_turns)
 
 
 def pose_difference(run: Run, first: Array, second: Array) -> float:

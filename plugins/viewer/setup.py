@@ -16,7 +16,7 @@ from limbik.core.pole import Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.settings import ONLY_3D, Settings
 from limbik.core.slots import OPTIONS, SOLVER
@@ -195,10 +195,8 @@ class Setup:
         trace: bool,
     ) -> Solution:
         asked: dict[str, Any] = {"fk_offsets": self.fk, "continuity": before, "trace": trace}
-        if turn is not None and isinstance(solver, Solver):
+        if turn is not None:
             asked["goal_turn"] = turn
-        if turn is not None and isinstance(solver, WholeSolver):
-            asked["goal_rotation"] = hpb_to_matrix(turn)
         return solver.solve(goal, **asked)
 
     def with_option(self, path: tuple[str, ...], value: Any) -> "Setup":

@@ -90,22 +90,23 @@ def test_a_followed_path_is_solved_from_pose_to_pose(file: Path) -> None:
 
 
 def test_plugins_solvers_and_2d_chains_are_compared_too(tmp_path: Path) -> None:
-    """A metric that solves again says nothing about a plug-in's solver, the others do."""
+    """A metric that mixes IK and FK says nothing about a plug-in's solver, the others do."""
     text = EXPERIMENT.replace("chains: [arm.yaml]", "chains: [arm.yaml, leg.yaml]")
     text = text.replace("kind: reach,", "kind: reach, by: ball,")
     text = text.replace("options: {initial_bend: two-bone}}", "solver: fabrik, options: {}}")
-    text = text.replace("metrics: [", "metrics: [drift, ")
+    text = text.replace("metrics: [", "metrics: [drift, mix_detour, ")
     file = write_files(tmp_path, text.replace("output: run", f"output: {tmp_path}/run"))
 
     run_here(file)
 
-    found = tables(tmp_path / "run", ("gain", "drift"))
+    found = tables(tmp_path / "run", ("gain", "drift", "mix_detour"))
     trials = read(file).trials
     whole = np.array([trial.solver is not None for trial in trials])
     path = np.array([trial.goal_set.is_path for trial in trials])
     assert whole.sum() == 8
     assert (np.isfinite(found[PATHS]["gain"]) == path).all()
-    assert (np.isfinite(found[PATHS]["drift"]) == ~whole).all()
+    assert np.isfinite(found[PATHS]["drift"]).all()
+    assert (np.isfinite(found[PATHS]["mix_detour"]) <= ~whole).all()
     assert set(found[SOLVES]["trial"].tolist()) == set(range(len(trials)))
 
 
