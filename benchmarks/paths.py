@@ -30,9 +30,10 @@ LIMBS: tuple[tuple[str, Chain, dict[str, Any]], ...] = (
         {},
     ),
 )  # fmt: skip
-FINISHES: tuple[tuple[str, Any], ...] = (
-    ("newton", "newton"),
-    ("fold: home", {"use": "newton", "fold": "home"}),
+WAYS: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("finish: newton", {}),
+    ("finish: {use: newton, fold: home}", {"finish": {"use": "newton", "fold": "home"}}),
+    ("start: current", {"start": "current"}),
 )
 
 
@@ -50,7 +51,7 @@ def paths(length: float) -> Array:
 
 def turns(angles: Array) -> Array:
     """Return the largest turn of a joint from frame to frame [deg], (PATHS, FRAMES - 1)."""
-    poses = hpb_to_matrix(angles.reshape(PATHS, FRAMES, -1, 3))[:, :, :-1]
+    poses = hpb_to_matrix(angles)[:, :, :-1]
     chords = np.linalg.norm(poses[:, 1:] - poses[:, :-1], axis=(3, 4)) / np.sqrt(8.0)
     most: Array = np.degrees(2.0 * np.arcsin(np.minimum(chords, 1.0))).max(axis=2)
     return most
@@ -59,17 +60,19 @@ def turns(angles: Array) -> Array:
 def main() -> None:
     """Print the table in Markdown."""
     registry = Registry(third_party=False)
-    print(f"| limb | finish | reached of {PATHS * FRAMES:,} | both reached | both not | one |")
+    print(f"| limb | option | reached of {PATHS * FRAMES:,} | both reached | both not | one |")
     print("|---|---|---|---|---|---|")
     for limb, chain, options in LIMBS:
-        goals = paths(chain.length).reshape(-1, 3)
-        for title, finish in FINISHES:
+        ways = paths(chain.length)
+        for title, way in WAYS:
             solver = Solver(
-                chain, registry=registry, tolerance=1e-4 * chain.length, finish=finish, **options
+                chain, registry=registry, tolerance=1e-4 * chain.length, **options, **way
             )
-            solution = solver.solve_many(goals)
-            reached = (np.asarray(solution.status) == Status.REACHED).reshape(PATHS, FRAMES)
-            large = turns(solution.angles) > LARGE
+            followed = [solver.follow(goals) for goals in ways]
+            angles = np.array([solution.angles for solution in followed])
+            status = np.array([solution.status for solution in followed])
+            reached = status == Status.REACHED
+            large = turns(angles) > LARGE
             ends = 0 + reached[:, 1:] + reached[:, :-1]
             counts = " | ".join(str(np.count_nonzero(large & (ends == n))) for n in (2, 0, 1))
             print(f"| {limb} | `{title}` | {np.count_nonzero(reached):,} | {counts} |")

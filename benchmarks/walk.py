@@ -1,6 +1,6 @@
 """Bake the legs of a recorded walk and hold them to the recording: docs/bodies.md.
 
-python benchmarks/walk.py CLIP [FIRST LAST] [--side 9] [--height -5]
+python benchmarks/walk.py CLIP [FIRST LAST]
 
 CLIP is a BVH file with LeftUpLeg, LeftLeg, LeftFoot and the same on the right below Hips, such as
 those of the CMU motion capture database; an added T-pose in frame 0 is left out. Measured are
@@ -25,22 +25,26 @@ from limbik.plugins.formats.bvh import read_bvh
 BENT = 0.05  # frames count for the swivel where the knee is so far off the line [leg lengths]
 STILL = 0.1  # a foot is planted below this speed [leg lengths/s]
 REGISTRY = Registry(third_party=False)
+# Poles of the left leg, in the pelvis at rest; the right leg has their images. The last is the one
+# that fits the left leg best in hindsight, those before fit both legs.
 KINDS = {
     "3d, manual": "",
-    "2d, pole in the pelvis": ", solver: 2d, frame: Hips, pole: {position: POLE}",
-    "2d, pole with leg rotor": ", solver: 2d, frame: Hips, pole: {position: POLE, rotor: leg}",
+    "2d, pole in the pelvis": "solver: 2d, frame: Hips, pole: {position: [SIDE9, -5, 100]}",
+    "2d, rotor that follows hip and foot": (
+        "solver: 2d, frame: Hips, pole: {position: [SIDE9, -5, 100], rotor: leg}"
+    ),
+    "2d, rotor that tilts with the foot": (
+        "solver: 2d, frame: Hips, pole: {position: [SIDE31, 82, 48], rotor: {twist: 1, tilt: 1}}"
+    ),
 }
 
 
-def scene_of(
-    clip: Path, frames: tuple[int, int], more: str, side: float, height: float
-) -> BodyScene:
+def scene_of(clip: Path, frames: tuple[int, int], more: str) -> BodyScene:
     """Both legs, each ankle along its path in the clip."""
     text = f"limbik: 1\nskeleton: {{bvh: '{clip}', frames: [{frames[0]}, {frames[1]}]}}\nchains:\n"
-    for name, sign in (("Left", 1.0), ("Right", -1.0)):
-        chosen = more.replace("POLE", f"[{sign * side}, {height}, 100]")
-        text += f"- {{name: {name}, base: {name}UpLeg, end: {name}Foot{chosen}, "
-        text += "options: {initial_bend: two-bone}}\n"
+    for name, side in (("Left", ""), ("Right", "-")):
+        text += f"- {{name: {name}, base: {name}UpLeg, end: {name}Foot, "
+        text += f"options: {{initial_bend: two-bone}}, {more.replace('SIDE', side)}}}\n"
     return body_from(read_yaml(text, "walk.yaml"), Path(), REGISTRY)
 
 
@@ -94,12 +98,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("clip", type=Path)
     parser.add_argument("frames", type=int, nargs="*")
-    parser.add_argument("--side", type=float, default=9.0)
-    parser.add_argument("--height", type=float, default=-5.0)
     given = parser.parse_args()
     first, last = given.frames or (1, len(read_bvh(given.clip).frames) - 1)
     for kind, more in KINDS.items():
-        scene = scene_of(given.clip, (first, last), more, given.side, given.height)
+        scene = scene_of(given.clip, (first, last), more)
         bake = bake_body(scene, REGISTRY)
         times = []
         for _ in range(7):

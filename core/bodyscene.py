@@ -265,9 +265,6 @@ def _part(
     if frame != WORLD:
         limb = skeleton.seen_from(frame, limb)
     scene = build_scene(model.name, model, document, folder, registry, limb)
-    if scene.follow and scene.solver is not None:
-        message = "a plug-in's solver solves each frame of a body on its own"
-        raise SceneError([document.fault("solver", message, ("follow",), hint="leave it out")])
     assert isinstance(scene.body, Limb)
     return Part(model.name, scene, scene.body, frame)
 

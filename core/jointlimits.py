@@ -1,8 +1,7 @@
 """Joints' own limits: strategies of the slot `limit` in place of ranges (M-08)."""
 
-from collections.abc import Sequence
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
@@ -71,7 +70,7 @@ def _tasks() -> int:
     return compiler.native(LIMIT_TASK.name, tasks)
 
 
-def margin_of(bound: Bound, mirrored: bool, angles: Sequence[float]) -> float:
+def margin_of(bound: Bound, mirrored: bool, angles: ArrayLike) -> float:
     """Return the angle a joint has left to the end of its own limit, in the interpreter [rad].
 
     Args:
@@ -79,9 +78,16 @@ def margin_of(bound: Bound, mirrored: bool, angles: Sequence[float]) -> float:
         mirrored: Whether it is meant for the mirror image.
         angles: HPB [rad].
     """
-    turn, margin = np.array(angles, np.float64), np.zeros(1)
-    if mirrored:
-        turn *= (-1.0, 1.0, -1.0)
+    return pulled(bound, mirrored, angles)[1]
+
+
+def pulled(bound: Bound, mirrored: bool, angles: ArrayLike) -> tuple[Array, float]:
+    """Return the turn a joint's own limit makes of one, (3,) [rad], and what was left to its end.
+
+    The arguments are those of `margin_of`.
+    """
+    sense = np.array([-1.0, 1.0, -1.0]) if mirrored else np.ones(3)
+    turn, margin = sense * np.asarray(angles, np.float64), np.zeros(1)
     params = unflatten(bound.strategy.params, flatten(bound.params))
     bound.strategy.function()(turn, params, margin)
-    return float(margin[0])
+    return sense * turn, float(margin[0])

@@ -49,9 +49,9 @@ class PoseBatch(ABC):
     tolerance: float
     angle: float
 
-    def __call__(self, goals: Array, follow: bool) -> Solution:
-        """Solve goals without an orientation, (m, 3) [length]."""
-        return self.solve_poses(goals, None, follow)
+    def __call__(self, goals: Array, follow: bool, near: Array | None = None, /) -> Solution:
+        """Solve goals without an orientation, see `limbik.core.whole.Batch`."""
+        return self.solve_poses(goals, None, follow, near)
 
     @abstractmethod
     def solve_poses(
@@ -67,7 +67,9 @@ class PoseBatch(ABC):
         """
 
 
-def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) -> Solution:
+def solve_turned(
+    batch: Batch, goals: Array, turns: Array | None, follow: bool, near: Array | None = None
+) -> Solution:
     """Solve goals with a whole solver; one that does not turn the end leaves orientations aside.
 
     Args:
@@ -75,10 +77,11 @@ def solve_turned(batch: Batch, goals: Array, turns: Array | None, follow: bool) 
         goals: World positions, (m, 3) [length].
         turns: World orientations, HPB, (m, 3) [rad]; NaN for goals without, None if none has one.
         follow: Whether each is solved from the pose of the one before.
+        near: Pose to start from, HPB, (n, 3) [rad]; the rest pose if absent.
     """
     if turns is None or not isinstance(batch, PoseBatch):
-        return batch(goals, follow)
-    return batch.solve_poses(goals, hpb_to_matrix(turns), follow)
+        return batch(goals, follow, near)
+    return batch.solve_poses(goals, hpb_to_matrix(turns), follow, near)
 
 
 class WholeSolver:
@@ -135,9 +138,16 @@ class WholeSolver:
         continuity: Continuity | None = None,
         trace: bool = False,
     ) -> Solution:
-        """Solve one goal; what else limbik's own solver takes is of no use here."""
+        """Solve one goal.
+
+        Of a continuity the pose counts, which the solver starts from. What else limbik's own solver
+        takes is of no use here.
+        """
+        near = continuity.angles if continuity is not None and continuity.known else None
         turns = None if goal_turn is None else goal_turn[None]
-        return self.solve_many(np.asarray(goal, np.float64)[None], goal_turns=turns).single(0)
+        places = np.asarray(goal, np.float64)[None]
+        one = solve_turned(self._batch, places, turns, near is not None, near).single(0)
+        return replace(one, continuity=Continuity.from_pose(one.angles))
 
     def solve_many(
         self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None

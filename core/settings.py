@@ -66,7 +66,7 @@ class Choose(Model):
         ),
     ] = None
     weights: Annotated[
-        dict[str, Annotated[float, Field(ge=0.0, le=1e6)]],
+        dict[str, Annotated[float, Field(ge=0.0, le=1e6, json_schema_extra={"default": 1.0})]],
         Field(default_factory=dict, description="how much a joint counts; 1 where absent [-]"),
     ]
     candidates: Annotated[
@@ -160,7 +160,7 @@ class Settings(Model):
         Field(ge=0.0, le=0.5, description="last part of the reach, pulled in smoothly; 0 = off"),
     ] = 0.0
     stiffness: Annotated[
-        dict[str, Annotated[float, Field(ge=0.0, lt=1.0)]],
+        dict[str, Annotated[float, Field(ge=0.0, lt=1.0, json_schema_extra={"default": 0.0})]],
         Field(
             description="share by which CCD turns a joint less; `held` keeps joints still [-]",
         ),

@@ -104,6 +104,11 @@ class Continuity:
         return cls(memory)
 
     @property
+    def known(self) -> bool:
+        """Whether it holds a pose."""
+        return bool(self.memory[3, 0] > 0.0)
+
+    @property
     def aim_base(self) -> Array:
         """Base angles of the aim pose, HPB [rad], (3,)."""
         return np.asarray(self.memory[0])

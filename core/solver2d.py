@@ -18,7 +18,7 @@ from limbik.core.flatten2d import (
     flat_plane_options,
 )
 from limbik.core.jointlimits import refuse_limits
-from limbik.core.pole import Pole, goal_axes, rotor_frames, turned_poles
+from limbik.core.pole import Pole, turn_pole
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.settings import Settings, misfits_in_2d
@@ -270,18 +270,17 @@ class Solver2D(Solver):
     def _ask(self, goals: Array, poles: Array | None, turns: Array | None) -> "_Asked":
         """Put goals and poles side by side, the poles turned by the rotor unless given."""
         goals = self._goals(goals)
-        rotor, place = self.pole.turns_by, self.pole.position
-        axes = None if turns is None else hpb_to_matrix(turns)
-        frames = None
-        if rotor is not None:
-            fixed = np.array(place)
-            frames = rotor_frames(self.chain, rotor, fixed, goals, axes)
-            if poles is None:
-                poles = turned_poles(self.chain, fixed, frames)
+        rotor = self.pole.turns_by
         rows = np.empty((len(goals), 6))
-        rows[:, :3] = goals
-        rows[:, 3:] = place if poles is None else poles
-        return _Asked(rows, frames, goal_axes(self.chain, rotor, frames, axes))
+        rows[:, :3], rows[:, 3:] = goals, self.pole.position
+        frames = axes = None
+        if rotor is not None:
+            rows[:, 3:], frames, axes = turn_pole(self.chain, self.pole, rotor, goals, turns)
+        elif turns is not None:
+            axes = hpb_to_matrix(turns)
+        if poles is not None:
+            rows[:, 3:] = poles
+        return _Asked(rows, frames, axes)
 
     @property
     def _columns(self) -> int:

@@ -5,19 +5,20 @@ its place in the document and our own words. Errors that only follow from anothe
 out: the missing key behind a mistyped one, the other branches of a union.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from limbik.core.errors import Fault, shortlist
+from limbik.core.errors import Fault, InputError, shortlist
 from limbik.core.wording import Wording, found_words, near_match, refusal
 from limbik.core.yamlfile import Document, KeyPath
 
 _MOST_LISTED = 12
+M = TypeVar("M", bound=BaseModel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,20 @@ class _Finding:
     @property
     def code(self) -> str:
         return self.wording.code
+
+
+def read_model(model: type[M], values: Mapping[str, Any]) -> M:
+    """Check values a program gives by a model.
+
+    Raises:
+        InputError: With a fault for each value that is refused.
+    """
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        document = Document("", dict(values), {}, {})
+        faults = validation_faults(error, document, model)
+        raise InputError(replace(fault, line=0, column=0) for fault in faults) from None
 
 
 def validation_faults(

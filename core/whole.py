@@ -2,13 +2,13 @@
 
 Such a strategy's `kernel` is no compiled step but a Python function `(chain, settings, params)`,
 params in radians. It looks at the chain, raises `ChainError` if it cannot solve this kind, and
-returns a function `(goals (m, 3), follow) -> Solution` with a leading goal axis, or a
-`limbik.core.posegoals.PoseBatch` if it turns the end to an orientation too. It must be quick and
-load no compiler: `limbik check` calls it.
+returns a `Batch`, or a `limbik.core.posegoals.PoseBatch` if it turns the end to an orientation too.
+It must be quick and load no compiler: `limbik check` calls it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,22 @@ BUILT_IN_3D = "3d"
 OWN_SOLVERS = (BUILT_IN_3D, "2d")
 """Names of the solvers that are no plug-ins: `limbik.core.solver.Solver` and `Solver2D`."""
 
-Batch = Callable[[Array, bool], Solution]
+
+class Batch(Protocol):
+    """A whole solver, ready for a chain of n joints."""
+
+    def __call__(self, goals: Array, follow: bool, near: Array | None = None, /) -> Solution:
+        """Solve goals, as a path or each on its own.
+
+        Args:
+            goals: World positions, (m, 3) [length].
+            follow: Whether each is solved from the pose of the one before.
+            near: Pose to start from, HPB, (n, 3) [rad]: that of the solve before on a path that is
+                given goal by goal; the rest pose if absent.
+
+        Returns:
+            A solution with a leading goal axis.
+        """
 
 
 @dataclass(frozen=True, slots=True)

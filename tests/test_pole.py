@@ -10,7 +10,7 @@ from limbik.core.errors import InputError
 from limbik.core.pole import ROTORS, Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
-from limbik.core.rotation import hpb_to_matrix
+from limbik.core.rotation import hpb_to_matrix, matrix_to_hpb
 from limbik.core.solution2d import PlanarSolution
 from limbik.core.solver2d import Solver2D
 
@@ -68,6 +68,31 @@ def test_a_preset_follows_the_goals_twist(preset: str, share: float) -> None:
 
     np.testing.assert_allclose(turned.pole - HIP, expected, atol=1e-9)
     assert ROTORS[preset].twist == share
+
+
+FOOT = (0.4, -0.7, 0.3)
+
+
+def test_all_shares_at_one_carry_the_pole_with_the_goal() -> None:
+    """As if the pole were a part of the foot."""
+    carried = solver(PoleRotor(twist=1.0, tilt=1.0)).solve((20.0, 30.0, 25.0), goal_turn=FOOT)
+    foot_at_rest = LEG.rest_pose[1][-1]
+    expected = hpb_to_matrix(FOOT) @ foot_at_rest.T @ (np.array(FRONT) - HIP)
+
+    np.testing.assert_allclose(carried.pole - HIP, expected, atol=1e-9)
+
+
+def test_tilting_the_goal_alone_moves_the_pole_by_the_share_of_the_tilt() -> None:
+    """Below the hip, where the leg hangs as at rest, a foot pitched down has no twist."""
+    pitch, share = 0.8, 0.25
+    foot = hpb_to_matrix((0.0, pitch, 0.0)) @ LEG.rest_pose[1][-1]
+    turn = matrix_to_hpb(foot)
+    tilted = solver(PoleRotor(twist=1.0, tilt=share)).solve((9.0, 20.0, 0.0), goal_turn=turn)
+    plain = solver("leg").solve((9.0, 20.0, 0.0), goal_turn=turn)
+    expected = hpb_to_matrix((0.0, pitch * share, 0.0)) @ (np.array(FRONT) - HIP)
+
+    np.testing.assert_allclose(tilted.pole - HIP, expected, atol=1e-9)
+    np.testing.assert_allclose(plain.pole, FRONT, atol=1e-9)
 
 
 @pytest.mark.parametrize("away", [0.0, 1e-7, -1e-7])

@@ -1,18 +1,24 @@
 """Whole solvers in scenes: chosen by name, refused where the chain does not fit."""
 
+import shutil
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from limbik.core.body import solve_body
+from limbik.core.bodyscene import BodyScene, read_any
 from limbik.core.chain import Chain
 from limbik.core.errors import PluginError, SceneError
+from limbik.core.pose import forward_kinematics
+from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import Scene, read_scene
 from limbik.core.settings import Settings
-from limbik.core.solution import Solution, Status
+from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solving import solve_scene
 from limbik.core.strategy import Strategy
 from limbik.core.whole import prepare
@@ -187,12 +193,91 @@ def test_a_scene_that_does_not_fit_its_solver_is_refused_with_the_line(
     assert caught.value.faults[0].line > 0
 
 
+def between(scene: Scene, count: int = 24) -> Array:
+    """A path of small steps along a scene's first goals, (m, 3)."""
+    parts = np.linspace(0.0, min(len(scene.goals), 4) - 1.0, count)
+    rows = np.arange(len(scene.goals))
+    return np.stack([np.interp(parts, rows, column) for column in scene.goals.T], 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "choice"),
+    [
+        ("arm.yaml", "fabrik"),
+        ("planar.yaml", "planar-fabrik"),
+        ("planar.yaml", "planar-ccd"),
+        ("planar.yaml", "article-ccd"),
+        ("cosine-arm.yaml", "cosine-arm"),
+        ("lambda-leg.yaml", "lambda-leg"),
+        ("arm7-pose.yaml", "refine"),
+    ],
+)
+def test_a_path_goal_by_goal_is_the_path_at_once(name: str, choice: str) -> None:
+    scene = read_scene(CONFIGS / name, REGISTRY)
+    bound = REGISTRY.bind("solver", choice)
+    goals = between(scene)
+    at_once = prepare(bound, scene.chain, scene.settings)(goals, True)
+    solver = WholeSolver(bound, scene.chain, scene.settings)
+    before = Continuity.fresh(scene.chain)
+    for row, goal in enumerate(goals):
+        found = solver.solve(goal, continuity=before)
+        np.testing.assert_allclose(found.angles, at_once.angles[row], atol=1e-6)
+        assert found.continuity is not None
+        before = found.continuity
+
+
+@pytest.mark.parametrize(
+    ("name", "choice"),
+    [("arm.yaml", "fabrik"), ("planar.yaml", "planar-ccd"), ("arm7.yaml", "refine")],
+)
+def test_a_pose_before_that_meets_the_goal_is_kept(name: str, choice: str) -> None:
+    """Where the goal leaves the chain free, where it comes from decides."""
+    scene = read_scene(CONFIGS / name, REGISTRY)
+    solver = WholeSolver(REGISTRY.bind("solver", choice), scene.chain, scene.settings)
+    low, high = np.maximum(scene.chain.low, -1.0), np.minimum(scene.chain.high, 1.0)
+    pose = low + 0.6 * (high - low)
+    goal = forward_kinematics(scene.chain, pose)[0][-1]
+    found = solver.solve(goal, continuity=Continuity.from_pose(pose))
+    np.testing.assert_allclose(found.angles[:-1], pose[:-1], atol=1e-6)
+    assert np.abs(solver.solve(goal).angles[:-1] - pose[:-1]).max() > 0.01
+
+
+def test_a_path_with_bounded_steps_is_bounded_from_the_pose_before(tmp_path: Path) -> None:
+    scene = read_scene(CONFIGS / "planar.yaml", REGISTRY)
+    bound = REGISTRY.bind("solver", {"use": "planar-fabrik", "step": 5.0})
+    solver = WholeSolver(bound, scene.chain, scene.settings)
+    first = solver.solve(scene.goals[0])
+    assert first.continuity is not None
+    goal = scene.goals[0] + 0.3 * scene.chain.length * np.array([0.0, -1.0, 0.3])
+    second = solver.solve(goal, continuity=first.continuity)
+    turned = np.abs(second.angles - first.angles).max()
+    assert 0.5 * np.radians(5.0) < turned < np.radians(5.0) + 1e-9
+
+
+def test_a_limb_of_a_body_follows_with_a_solver_of_its_own(tmp_path: Path) -> None:
+    text = (CONFIGS / "body.yaml").read_text(encoding="utf-8")
+    arm = "options: {tolerance: 0.0001, max_iterations: 100, smoothing: 0.5, off_axis: true}"
+    text = text.replace(arm, "solver: fabrik\n    follow: true")
+    (tmp_path / "body.yaml").write_text(text, encoding="utf-8")
+    shutil.copy(CONFIGS / "humanoid.urdf", tmp_path)
+    body = read_any(tmp_path / "body.yaml", REGISTRY)
+    assert isinstance(body, BodyScene)
+    arms = [frame.solutions["left arm"] for frame in solve_body(body, REGISTRY)]
+    settings = next(part.scene.settings for part in body.parts if part.name == "left arm")
+    bound = REGISTRY.bind("solver", "fabrik")
+    for before, found in pairwise(arms):
+        solver = WholeSolver(bound, found.chain, settings)
+        again = solver.solve(found.goal, continuity=before.continuity)
+        np.testing.assert_array_equal(again.angles, found.angles)
+        assert np.abs(solver.solve(found.goal).angles - found.angles).max() > 1e-3
+
+
 def test_a_solver_from_another_plug_in_solves_a_scene(tmp_path: Path) -> None:
     from limbik.core.hooks import hookimpl
     from limbik.core.whole import Batch, assemble
 
     def rests(chain: Chain, settings: Settings, params: Any) -> Batch:
-        def solve(goals: Array, follow: bool) -> Solution:
+        def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
             angles = np.repeat(chain.rest[None], len(goals), axis=0)
             ones = np.ones(len(goals), np.int64)
             return assemble(chain, goals, angles, ones, 0 * ones, ["rests"] * len(goals))

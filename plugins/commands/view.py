@@ -17,6 +17,10 @@ def view(
     host: Annotated[
         str, typer.Option(help="Address to listen at; the default is for this machine only.")
     ] = "127.0.0.1",
+    timeout: Annotated[
+        int,
+        typer.Option(min=0, help="Seconds to go on after the last page closed; 0 keeps serving."),
+    ] = 5,
     open_browser: Annotated[
         bool, typer.Option("--open", help="Open the page in the browser.")
     ] = False,
@@ -26,6 +30,8 @@ def view(
     limbik view arm.yaml
 
     limbik view leg-pole.yaml --open
+
+    The server ends by itself a few seconds after its last page was closed.
     """
     with reported():
         from limbik.core.bodyscene import read_any
@@ -42,10 +48,12 @@ def view(
         announce_compiling()
         viewer = Viewer(Session(read, registry), host, port)
         try:
-            typer.echo(f"{read.document.name} is at {viewer.url} (Ctrl-C ends)")
+            ends = "closing the page or Ctrl-C ends it" if timeout else "Ctrl-C ends it"
+            typer.echo(f"{read.document.name} is at {viewer.url} ({ends})")
             if open_browser:
                 webbrowser.open(viewer.url)
-            viewer.wait()
+            viewer.wait(timeout)
+            typer.echo("limbik: the last page was closed", err=True)
         except KeyboardInterrupt:  # the usual end
             pass
         finally:

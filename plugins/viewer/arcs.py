@@ -1,24 +1,33 @@
 """The ranges of joints as arcs, and where in them the joints stand; world coordinates.
 
 An axis with a range gets an arc that its pointer sweeps: the joint's z for heading and pitch, its y
-for bank. Free and fixed axes get none.
+for bank. Free and fixed axes get none. A joint with a limit of its own gets the rim that its z can
+reach.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from limbik.core.binding import Bound
 from limbik.core.chain import AXES, Chain
-from limbik.core.rotation import Array, hpb_to_matrix
+from limbik.core.jointlimits import margin_of, pulled
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.solution import AT_LIMIT
 from limbik.core.solution2d import PlanarSolution
+from limbik.plugins.paths.quaternions import to_matrix
 from limbik.plugins.viewer.session import Shown
-from limbik.plugins.viewer.shapes import segments
+from limbik.plugins.viewer.shapes import along, segments
 
 STEPS = 24
 SIZES = (1.0, 0.82, 0.64)  # of heading, pitch, bank, over the arcs' size
 PLANAR = "planar"
+OWN = "own"
+AROUND = 48  # directions in which a joint is swung out to its own limit
+SPOKES = 6  # one at every so many of them
+BEHIND = np.radians(179.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +35,7 @@ class Arc:
     """One range.
 
     Attributes:
-        axis: `heading`, `pitch`, `bank` or `planar`.
+        axis: `heading`, `pitch`, `bank`, `planar`, or `own` for a limit of its own.
         lines: The arc with its two ends, (k, 2, 3) [length].
         hand: From the joint to where it stands, (2, 3) [length].
         at_limit: Whether it stands at an end of its range.
@@ -55,6 +64,9 @@ def _turning(shown: Shown, chain: Chain, size: float) -> Iterator[Arc]:
         above = shown.rotations[joint - 1] if joint else chain.base_rotation
         zero, place = above @ chain.frozen[joint], shown.positions[joint]
         angles = shown.angles[joint]
+        bound = (shown.solution.limits or (None,) * len(chain))[joint]
+        if bound is not None:
+            yield from _own(bound, chain.joints[joint].mirrored, place, size * zero, angles)
         for axis in range(3):
             low, high = chain.low[joint, axis], chain.high[joint, axis]
             if not AT_LIMIT < high - low < np.inf:
@@ -64,6 +76,39 @@ def _turning(shown: Shown, chain: Chain, size: float) -> Iterator[Arc]:
             swept[:-1, axis], swept[-1, axis] = np.linspace(low, high, STEPS), angles[axis]
             rays = zero @ hpb_to_matrix(swept)[..., 1 if axis == 2 else 2].T
             yield _arc(AXES[axis], place, size * SIZES[axis] * rays.T, angles[axis], low, high)
+
+
+def _own(bound: Bound, mirrored: bool, place: Array, axes: Array, angles: Array) -> Iterator[Arc]:
+    """Give the rim of a joint's own limit with spokes to it; none where nothing limits the swing.
+
+    Args:
+        bound: The limit.
+        mirrored: Whether it is meant for the mirror image.
+        place: Of the joint [length].
+        axes: Of its zero pose, as long as the rim is far, (3, 3) [length].
+        angles: Where it stands, HPB [rad].
+    """
+    rim = _rim(bound, mirrored)
+    if rim is None:
+        return
+    ends = place + rim @ axes.T
+    spokes = np.stack([np.broadcast_to(place, ends.shape), ends], 1)[::SPOKES]
+    hand = place + axes @ hpb_to_matrix(angles)[:, 2]
+    at_limit = margin_of(bound, mirrored, angles) < AT_LIMIT
+    lines = np.concatenate([segments(np.append(ends, ends[:1], 0)), spokes])
+    yield Arc(OWN, lines, np.array([place, hand]), at_limit)
+
+
+@lru_cache(maxsize=64)
+def _rim(bound: Bound, mirrored: bool) -> Array | None:
+    """Return where a limit lets z, swung out as far as it goes all around, (AROUND, 3)."""
+    around = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
+    s, c = np.sin(BEHIND), np.cos(BEHIND)
+    ways = np.stack([s * np.cos(around), s * np.sin(around), np.full(AROUND, c)], 1)
+    found = [pulled(bound, mirrored, matrix_to_hpb(to_matrix(turn))) for turn in along(ways)]
+    if all(margin > 0.0 for _, margin in found):
+        return None
+    return np.array([hpb_to_matrix(turn)[:, 2] for turn, _ in found])
 
 
 def _planar(shown: Shown, solution: PlanarSolution, size: float) -> Iterator[Arc]:

@@ -5,7 +5,7 @@ and meaning of each field. A new option, or a strategy of a plug-in, so appears 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from pydantic import BaseModel
@@ -26,6 +26,8 @@ class Control:
         size: Of a vector.
         text: What it means.
         initial: What a switch sets its group to.
+        by_joint: Whether there is one for each joint, its name being the path's next key.
+        absent: What a joint without one has; None for its rest pose.
     """
 
     path: tuple[str, ...]
@@ -36,6 +38,12 @@ class Control:
     size: int = 0
     text: str = ""
     initial: Any = None
+    by_joint: bool = False
+    absent: float | None = None
+
+    def of_joint(self, joint: str) -> "Control":
+        """Return the control of one joint."""
+        return replace(self, path=(*self.path, joint), by_joint=False)
 
     @property
     def name(self) -> str:
@@ -75,11 +83,18 @@ def _field(
         yield from _fields(_named(field, definitions), definitions, path)
     elif [form for form in forms if form.get("type") == "null"]:
         inner = next(form for form in forms if form.get("type") != "null")
-        if "$ref" in inner:
-            group = _named(inner, definitions)
-            text = text or str(group.get("description", "")).split(" (")[0]
+        group = _named(inner, definitions) if "$ref" in inner else inner
+        text = text or str(group.get("description", "")).split(" (")[0]
+        if "$ref" in inner or _is_by_joint(inner):
             yield Control(path, "switch", text=text, initial=_start(group))
+        if "$ref" in inner:
             yield from _fields(group, definitions, path)
+        elif _is_by_joint(inner):
+            yield from _field(inner, definitions, path)
+    elif _is_by_joint(field):
+        item = field["additionalProperties"]
+        for control in _field(item, definitions, path):
+            yield replace(control, text=text, by_joint=True, absent=item.get("default"))
     elif "enum" in field:
         yield Control(path, "choice", choices=tuple(field["enum"]), text=text)
     elif field.get("type") in _KINDS:
@@ -87,6 +102,11 @@ def _field(
     elif field.get("type") == "array" and "minItems" in field:
         item = field["prefixItems"][0] if "prefixItems" in field else field["items"]
         yield Control(path, "vector", *_range(item), size=field["minItems"], text=text)
+
+
+def _is_by_joint(field: Mapping[str, Any]) -> bool:
+    """Look whether a field is a table with the same kind of value for each joint."""
+    return isinstance(field.get("additionalProperties"), Mapping)
 
 
 def _named(field: Mapping[str, Any], definitions: Mapping[str, Any]) -> Mapping[str, Any]:

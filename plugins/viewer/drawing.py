@@ -48,6 +48,7 @@ class Limb:
         self, scene: SceneApi, name: str, count: int, size: float, colour: Colour = BONE
     ) -> None:
         self._size, still = size, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+        self._drawn: tuple[Array, set[int]] = np.full((count, 3), np.nan), set()
         somewhere = np.zeros((count, 3))
         self._bones = scene.add_batched_meshes_simple(
             f"{name}/bones",
@@ -75,6 +76,9 @@ class Limb:
             positions: World, (n, 3) [length].
             blocking: Indices of joints.
         """
+        if np.array_equal(positions, self._drawn[0]) and blocking == self._drawn[1]:
+            return
+        self._drawn = positions, blocking
         places = to_page(positions)
         ways = places[1:] - places[:-1]
         lengths = np.linalg.norm(ways, axis=1)
@@ -116,26 +120,14 @@ class ChainDrawing:
         self.limb = Limb(scene, name, len(shown.positions), size)
         self.colours = dict(LINES)
         self.lines = {
-            line: scene.add_line_segments(
-                f"{name}/{line.replace(' ', '-')}",
-                NOWHERE,
-                colour,
-                thickness=2.5,
-                thickness_units="screen",
-                visible=line in SHOWN_AT_FIRST and not plain,
+            line: add_lines(
+                scene, f"{name}/{line.replace(' ', '-')}", 2.5, line in SHOWN_AT_FIRST and not plain
             )
-            for line, colour in LINES.items()
+            for line in LINES
         }
-        thin: dict[str, Any] = {"thickness_units": "screen"}
-        self._ranges = scene.add_line_segments(
-            f"{name}/limits", NOWHERE, (0, 0, 0), thickness=1.5, **thin
-        )
-        self._hands = scene.add_line_segments(
-            f"{name}/hands", NOWHERE, (0, 0, 0), thickness=4.0, **thin
-        )
-        self._rotor = scene.add_line_segments(
-            f"{name}/rotor", NOWHERE, (0, 0, 0), thickness=3.0, **thin
-        )
+        self._ranges = add_lines(scene, f"{name}/limits", 1.5)
+        self._hands = add_lines(scene, f"{name}/hands", 4.0)
+        self._rotor = add_lines(scene, f"{name}/rotor", 3.0)
         self._cone: Any = None
         self._cone_is: tuple[Any, ...] = ()
         self._scene, self._name = scene, name
@@ -255,9 +247,7 @@ class SkeletonDrawing:
             above = session.body.skeleton.parents
             pairs = [(parent, joint) for joint, parent in enumerate(above) if parent >= 0]
             self._pairs = [pair for pair in pairs if pair not in drawn]
-        self._lines = scene.add_line_segments(
-            "/skeleton", NOWHERE, REST, thickness=3.0, thickness_units="screen"
-        )
+        self._lines = add_lines(scene, "/skeleton", 3.0)
 
     def update(self, session: Session) -> None:
         """Draw the last solve."""
@@ -291,7 +281,23 @@ def line_colours(colours: ArrayLike) -> NDArray[np.uint8]:
     return np.repeat(np.round(linear).astype(np.uint8)[:, None], 2, axis=1)
 
 
-def _set(handle: Any, points: Array, colours: Array | None = None) -> None:
+def add_lines(scene: SceneApi, name: str, thickness: float, visible: bool = True) -> Any:
+    """Add a node of lines, without any yet.
+
+    It is made with an array of colours: the page shows none of a node that was made with one colour
+    and got an array later.
+    """
+    return scene.add_line_segments(
+        name,
+        NOWHERE,
+        line_colours(np.zeros((1, 3))),
+        thickness=thickness,
+        thickness_units="screen",
+        visible=visible,
+    )
+
+
+def _set(handle: Any, points: Array, colours: Array) -> None:
     """Give a node of lines other points, and a colour for each of them."""
-    handle.colors = line_colours(np.zeros((len(points), 3)) if colours is None else colours)
+    handle.colors = line_colours(colours)
     handle.points = points.astype(np.float32)

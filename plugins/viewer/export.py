@@ -5,7 +5,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from limbik.core.chain import AXES
 from limbik.plugins.viewer.session import Chained, Session
+from limbik.plugins.viewer.setup import Setup
 
 _LEFT_OUT = ("pole", "axes", "judge", "trajectory")  # written anew, or about the whole path
 
@@ -29,7 +31,24 @@ def _changed(one: Chained, session: Session) -> dict[str, Any]:
     """What a scene says of a chain, with how it is solved now."""
     written = one.setup.given.document.content
     kept = {key: value for key, value in written.items() if key not in _LEFT_OUT}
+    if one.setup.takes_limits:
+        kept["chain"] = _limited(written["chain"], one.setup)
     return kept | _solve_keys(one, session.frame) | {"follow": session.follow}
+
+
+def _limited(chain: dict[str, Any], setup: Setup) -> dict[str, Any]:
+    """A chain as its scene writes it, with the limits its joints have now."""
+    joints = []
+    given = zip(chain["joints"], setup.given.chain.joints, setup.chain.joints, strict=True)
+    for written, before, now in given:
+        joint = dict(written)
+        if now != before:
+            for key in ("limit",) if now.limit is None else (*AXES, "limit"):
+                joint.pop(key, None)
+            if now.limit is not None:
+                joint["limit"] = _plain(now.limit)
+        joints.append(joint)
+    return {**chain, "joints": joints}
 
 
 def _solve_keys(one: Chained, frame: int) -> dict[str, Any]:

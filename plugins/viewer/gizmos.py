@@ -57,6 +57,8 @@ class Gizmo:
         self._label = server.scene.add_label(f"{name}-label", text, anchor="bottom-center")
         self._rotates = False
         self._visible = True
+        self._held = False
+        self._is_put = False  # whether the handle is where it was put
         far = (-FAR, FAR)
         self._handle = server.scene.add_transform_controls(
             name,
@@ -74,8 +76,12 @@ class Gizmo:
 
     def _dragged(self, event: TransformControlsEvent) -> None:
         """Take the newest pose; one that is not finite, or is refused, is put back."""
+        self._is_put = False
         if event.phase == "start":
+            self._held = True
             return
+        if event.phase == "end":
+            self._held = False
         place, wxyz = np.array(event.target.position), np.array(event.target.wxyz)
         taken = False
         if np.isfinite(place).all() and np.isfinite(wxyz).all() and wxyz.any():
@@ -84,14 +90,17 @@ class Gizmo:
         if not taken:
             self._handle.position, self._handle.wxyz = to_page(self._place), self._wxyz()
 
-    def put(self, place: Array, turn: Array | None = None, dragged: bool = False) -> None:
-        """Put it somewhere, world; while it is being dragged only what goes with it moves."""
-        self._place = place
-        self._turn = self._turn if turn is None else turn
+    def put(self, place: Array, turn: Array | None = None) -> None:
+        """Put it somewhere, world; while somebody holds it only what goes with it moves."""
+        turn = self._turn if turn is None else turn
+        same = np.array_equal(place, self._place) and np.array_equal(turn, self._turn)
+        if same and self._is_put:
+            return
+        self._place, self._turn, self._is_put = place, turn, not self._held
         at = to_page(place)
         self._ball.position = at
         self._label.position = at + 0.35 * self._size * UP
-        if not dragged:
+        if not self._held:
             self._handle.position, self._handle.wxyz = at, self._wxyz()
 
     @property

@@ -18,6 +18,7 @@ ARCS: Final[dict[str, Colour]] = {
     "pitch": (0, 150, 136),
     "bank": (150, 90, 210),
     "planar": (0, 150, 136),
+    "own": (226, 134, 28),
 }
 LINES: Final[dict[str, Colour]] = {
     "handle": (90, 100, 112),

@@ -115,7 +115,7 @@ class Page:
 
         Args:
             change: Changes the session or raises `LimbikError`.
-            dragged: Whether more changes follow at once.
+            dragged: Whether more changes follow at once, from a gizmo or a path that plays.
 
         Returns:
             Whether it was taken.
@@ -148,11 +148,13 @@ class Page:
                 gizmo = self.goals[name]
                 turn = np.eye(3)
                 if gizmo.rotates:
-                    turn = _goal_turn(chained.turn(self.session.frame), one)
-                gizmo.put(chained.to_world(chained.goal), turn, dragged)
+                    given = chained.world_turn(chained.setup, self.session.frame)
+                    turn = _goal_turn(given, one)
+                gizmo.put(chained.to_world(chained.goal), turn)
                 pole = self.poles[name]
                 pole.visible = chained.setup.in_plane
-                pole.put(chained.pole(chained.setup), None, dragged)
+                if pole.visible:
+                    pole.put(chained.pole(chained.setup))
             compared = self.session.compared(shown)
             self._skeleton.update(self.session)
             self._show_compared(compared)

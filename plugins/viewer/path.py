@@ -66,7 +66,7 @@ class Path:
         assert scene.trajectory is not None
         samples = scene_trajectory(scene).sample(scene.trajectory.dt)
         names = tuple("on the trajectory" for _ in samples.times)
-        turns = matrix_to_hpb(samples.rotations) if scene.solver is not None else None
+        turns = matrix_to_hpb(samples.rotations)
         return cls(samples.times, names, {scene.name: samples.positions}, {scene.name: turns})
 
     def __len__(self) -> int:

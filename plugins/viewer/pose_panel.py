@@ -46,6 +46,9 @@ class PosePanel:
             rotor = Control(("rotor",), "choice", choices=names, text="what turns the pole along")
             self._rotor = add_control(gui, rotor, self._rotor_name(), self._choose_rotor)
             self._rotor_folder: Any = None
+            text = "leave the rest pose where it is"
+            bind = Control(("bind",), "bool", text=text)
+            self._bind = add_control(gui, bind, one.setup.given.bind, self._set_bind)
         self._build_rotor()
         self._add_path()
 
@@ -53,6 +56,7 @@ class PosePanel:
         with self._session.lock:
             self._page.select(name)
             self._rotor.value = self._rotor_name()
+            self._bind.value = self._session.chain.setup.given.bind
             self._build_rotor()
             self.selected()
         return True
@@ -108,6 +112,12 @@ class PosePanel:
             lambda: self._session.change(
                 one.name, one.setup.with_pole(one.from_world(np.array(value)))
             )
+        )
+
+    def _set_bind(self, control: Control, value: Any) -> bool:
+        one = self._session.chain
+        return self._page.act(
+            lambda: self._session.change(one.name, one.setup.with_bind(bool(value)))
         )
 
     def _rotor_name(self) -> str:

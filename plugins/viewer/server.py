@@ -5,16 +5,14 @@ from contextlib import redirect_stdout
 from importlib.util import find_spec
 from io import StringIO
 from ipaddress import ip_address
-from typing import TYPE_CHECKING
+from time import monotonic, sleep
 
 from limbik.core.errors import EnvironmentProblem, Fault, InputError
 from limbik.plugins.viewer.session import Session
 
-if TYPE_CHECKING:
-    pass
-
 LOOPBACK = "127.0.0.1"
 PORT = 8080
+LOOK = 0.25  # [s] from one look for pages to the next
 
 
 def check_viewer() -> None:
@@ -73,9 +71,9 @@ class Viewer:
         gui.set_panel_label(session.name)
         self.page: Page = Page(self._server, session)
         tabs = gui.add_tab_group()
-        names = ("Pose", "Solver", "Options", "FK", "Show")
-        pose, solver, options, fk, show = (tabs.add_tab(name) for name in names)
-        solving = SolverPanel(self.page, solver, options, fk)
+        names = ("Pose", "Solver", "Options", "Joints", "Show")
+        pose, solver, options, joints, show = (tabs.add_tab(name) for name in names)
+        solving = SolverPanel(self.page, solver, options, joints)
         with pose:
             self._pose = PosePanel(self.page, solving.rebuild)
         with show:
@@ -84,9 +82,22 @@ class Viewer:
             self.page.add_panel(panel)
         self.url = f"http://{host}:{self._server.get_port()}"
 
-    def wait(self) -> None:
-        """Serve until the process is interrupted."""
-        self._server.sleep_forever()
+    @property
+    def pages(self) -> int:
+        """How many pages are open, also those that have not drawn anything yet."""
+        return len(self._server._websock_server._live_connections)
+
+    def wait(self, timeout: float) -> None:
+        """Serve until there was a page and then none for a while.
+
+        Args:
+            timeout: How long to go on without a page [s]; 0 goes on until interrupted.
+        """
+        left: float | None = None  # when the last page was there
+        while timeout <= 0.0 or left is None or monotonic() - left < timeout:
+            sleep(LOOK)
+            if self.pages:
+                left = monotonic()
 
     def close(self) -> None:
         """Stop serving and playing."""

@@ -16,7 +16,7 @@ from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import LimbikError
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.scene import Scene
 from limbik.core.skeleton import WORLD
 from limbik.core.slots import SOLVER
@@ -92,6 +92,13 @@ class Chained:
         """Return how the goal is turned in a frame of the path, HPB [rad]."""
         return None if self.turns is None else self.turns[min(frame, len(self.turns) - 1)]
 
+    def world_turn(self, setup: Setup, frame: int) -> Array | None:
+        """Return it in the world; the 2D solver's turns are never in other axes."""
+        turn = self.turn(frame)
+        if turn is None or setup.in_plane:
+            return turn
+        return matrix_to_hpb(self.axes @ hpb_to_matrix(turn))
+
 
 class Session:
     """Chains with their goals, and what of them is to be seen.
@@ -163,7 +170,8 @@ class Session:
             return None
         one = self.chain
         found = shown[one.name].solution
-        solution = self.other.again(found, one.turn(self.frame), one.pole(self.other))
+        turn = one.world_turn(self.other, self.frame)
+        solution = self.other.again(found, turn, one.pole(self.other))
         return _seen(self.other, solution, self.stage, {})
 
     def move_goal(self, name: str, position: Array) -> None:
@@ -177,9 +185,11 @@ class Session:
         one.goal = one.from_world(self.flat.nearest(place) if self.flat else place)
 
     def turn_goal(self, name: str, turn: Array) -> None:
-        """Turn a chain's goal, HPB, (3,) [rad]."""
-        self.chains[name].turns = checked(turn, (3,), "goal's rotation").reshape(1, 3)
-        self._solver = None
+        """Turn a chain's goal, HPB, (3,) [rad], world."""
+        one, given = self.chains[name], checked(turn, (3,), "goal's rotation")
+        if not one.setup.in_plane:
+            given = matrix_to_hpb(one.axes.T @ hpb_to_matrix(given))
+        one.turns, self._solver = given.reshape(1, 3), None
 
     def change(self, name: str, setup: Setup) -> None:
         """Solve a chain another way from now on; it is tried before it is taken.
@@ -286,7 +296,7 @@ class Session:
         return BodySolver(body.skeleton, parts)
 
     def _shown(self, one: Chained, solution: Solution) -> Shown:
-        turn = one.turn(self.frame)
+        turn = one.world_turn(one.setup, self.frame)
         parts = {
             part: one.setup.again(solution, turn, one.pole(one.setup), part).positions
             for part in self.parts

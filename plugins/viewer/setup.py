@@ -5,13 +5,12 @@ from copy import deepcopy
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
-from limbik.core.chain import Chain
-from limbik.core.errors import Fault, InputError, LimbikError
+from limbik.core.chain import Chain, Joint
+from limbik.core.errors import LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
 from limbik.core.pose import forward_kinematics
@@ -19,7 +18,7 @@ from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
-from limbik.core.settings import ONLY_3D, Model, Settings
+from limbik.core.settings import ONLY_3D, Settings
 from limbik.core.slots import OPTIONS, SOLVER
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
@@ -27,14 +26,13 @@ from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.solving import single_solver
 from limbik.core.strategy import layout
+from limbik.core.validation import read_model
 from limbik.core.whole import OWN_SOLVERS
-from limbik.core.wording import found_words, refusal
 from limbik.plugins.viewer.controls import Control, controls
 
 IN_PLANE = "2d"
 PLAIN_FINISHES = ("newton", "none")  # all that 2D has, without parameters
 Choice = dict[str, Any]
-M = TypeVar("M", bound=Model)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +46,7 @@ class Setup:
         settings: Options of all solvers; those the present one has no use for are kept.
         pole: Where the 2D solver bends to.
         fk: FK offsets, HPB, (n, 3) [rad].
+        own: The joints' own limits, n of them, `{use: name, ...}`; None for ranges.
     """
 
     given: Scene
@@ -56,6 +55,7 @@ class Setup:
     settings: Settings
     pole: Pole
     fk: Array
+    own: tuple[Choice | None, ...]
 
     @classmethod
     def of(cls, scene: Scene, registry: Registry) -> "Setup":
@@ -64,12 +64,21 @@ class Setup:
         if scene.solver is not None:
             choice = {"use": scene.solver.name, **plain(scene.solver.params)}
         pole = scene.pole or _beside(scene.chain)
-        return cls(scene, registry, choice, scene.settings, pole, scene.fk_offsets)
+        own = tuple(_mapping(joint.limit) for joint in scene.chain.joints)
+        return cls(scene, registry, choice, scene.settings, pole, scene.fk_offsets, own)
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The chain with the limits as they are now."""
+        given = self.given.chain
+        if self.own == tuple(_mapping(joint.limit) for joint in given.joints):
+            return given
+        return replace(given, joints=tuple(map(_limited, given.joints, self.own)))
 
     @property
-    def chain(self) -> Chain:
-        """The chain."""
-        return self.given.chain
+    def takes_limits(self) -> bool:
+        """Whether joints can be given other limits: the scene writes its chain itself."""
+        return self.given.body is None
 
     @property
     def in_plane(self) -> bool:
@@ -113,6 +122,7 @@ class Setup:
             solver = self.registry.bind(SOLVER.name, self.choice)
         return replace(
             self.given,
+            chain=self.chain,
             settings=_fitting(self.settings, self.in_plane),
             solver=solver,
             pole=self.pole if self.in_plane else None,
@@ -185,7 +195,7 @@ class Setup:
         trace: bool,
     ) -> Solution:
         asked: dict[str, Any] = {"fk_offsets": self.fk, "continuity": before, "trace": trace}
-        if turn is not None and (self.takes_turn or self.in_plane):
+        if turn is not None:
             asked["goal_turn"] = turn
         return solver.solve(goal, **asked)
 
@@ -220,6 +230,20 @@ class Setup:
         values = {"position": self.pole.position, "rotor": given}
         return self._changed(pole=read_model(Pole, values))
 
+    def with_bind(self, bind: bool) -> "Setup":
+        """Return the setup whose 2D solver leaves the rest pose where it is, or not."""
+        return self._changed(given=replace(self.given, bind=bind))
+
+    def with_limit(self, joint: int, choice: Choice | None) -> "Setup":
+        """Return the setup with another limit of one joint; None for its ranges.
+
+        Raises:
+            LimbikError: There is none of this name, its parameters are refused, or the solver
+                takes none.
+        """
+        own = (*self.own[:joint], choice, *self.own[joint + 1 :])
+        return self._changed(own=own)
+
     def with_fk(self, joint: int, turn: Array) -> "Setup":
         """Return the setup with another FK offset of one joint, HPB, (3,) [rad]."""
         offsets = self.fk.copy()
@@ -230,8 +254,11 @@ class Setup:
         """Return the strategy in a slot, or the solver, with all its parameters."""
         if slot == SOLVER.name and self.choice["use"] in OWN_SOLVERS:
             return self.choice
-        given = self.choice if slot == SOLVER.name else getattr(self.settings, slot)
-        bound = self.registry.bind(slot, given)
+        return self.full(slot, self.choice if slot == SOLVER.name else getattr(self.settings, slot))
+
+    def full(self, slot: str, choice: str | Choice) -> Choice:
+        """Return a choice with all its parameters."""
+        bound = self.registry.bind(slot, choice)
         return {"use": bound.name, **plain(bound.params)}
 
     def fresh(self, slot: str, name: str) -> Choice:
@@ -259,6 +286,18 @@ class Setup:
         return changed
 
 
+def _mapping(choice: str | Mapping[str, Any] | None) -> Choice | None:
+    """Return a choice of a strategy as a mapping."""
+    return {"use": choice} if isinstance(choice, str) else None if choice is None else dict(choice)
+
+
+def _limited(joint: Joint, own: Choice | None) -> Joint:
+    """Return a joint with a limit of its own, or with its ranges."""
+    if own is None:
+        return replace(joint, limit=None)
+    return replace(joint, limit=own, heading=None, pitch=None, bank=None)
+
+
 def plain(params: Any) -> dict[str, Any]:
     """Return a strategy's parameters as a scene writes them."""
     if not params:
@@ -277,26 +316,6 @@ def put(values: Mapping[str, Any], path: tuple[str, ...], value: Any) -> dict[st
         place = place.setdefault(key, {})
     place[path[-1]] = value
     return found
-
-
-def read_model(shape: type[M], values: dict[str, Any]) -> M:
-    """Check values by a model.
-
-    Raises:
-        InputError: With a fault for each value that is refused.
-    """
-    try:
-        return shape.model_validate(values)
-    except ValidationError as error:
-        faults = []
-        for complaint in error.errors(include_url=False):
-            kind, context = complaint["type"], complaint.get("ctx", {})
-            words = refusal(kind, context, complaint["msg"], complaint["input"])
-            text = (
-                words.message or f"must be {words.allowed}, not {found_words(complaint['input'])}"
-            )
-            faults.append(Fault(words.code, text, ".".join(map(str, complaint["loc"]))))
-        raise InputError(faults) from None
 
 
 def _fitting(settings: Settings, in_plane: bool) -> Settings:

@@ -14,6 +14,8 @@ from limbik.plugins.viewer.looks import TRIAD
 from limbik.plugins.viewer.session import Session, Shown
 from limbik.plugins.viewer.views import camera
 
+ABOVE = 0.25  # that is seen above a goal, over the chain's length: its arrow
+
 
 def set_stage(server: ViserServer, session: Session, shown: dict[str, Shown]) -> None:
     """Lay the floor, mark limbik's axes, place the camera."""
@@ -55,15 +57,19 @@ def set_stage(server: ViserServer, session: Session, shown: dict[str, Shown]) ->
 def seen_points(session: Session, shown: dict[str, Shown]) -> Array:
     """Return what the camera shall see, (m, 3) [length]."""
     parts: list[Array] = []
-    if session.follow and session.body is None:
-        parts += session.path.goals.values()
     for name, one in shown.items():
         chained = session.chains[name]
         chain = one.solution.chain
+        above = ABOVE * chain.length * np.array([0.0, 1.0, 0.0])
         parts += [one.positions, forward_kinematics(chain, chain.rest)[0]]
-        parts.append(chained.to_world(chained.goal)[None])
+        goals = chained.to_world(chained.goal)[None]
+        if session.body is None and (session.follow or session.flat is not None):
+            path = session.path.goals[name]
+            away = np.linalg.norm(path - one.positions[0], axis=1)
+            goals = np.concatenate([goals, path[away <= chain.length]])
+        parts += [goals, goals + above]
         if chained.setup.in_plane:
-            parts.append(chained.pole(chained.setup)[None])
+            parts += [chained.pole(chained.setup)[None], one.positions[:1] + above]
     if session.whole is not None:
         parts.append(session.whole.positions)
     return np.concatenate(parts)

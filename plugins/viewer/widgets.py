@@ -14,7 +14,7 @@ Change = Callable[[Control, Any], bool]
 WIDEST_SLIDER = 1000  # longer ranges are typed
 
 
-def add_control(gui: GuiApi, control: Control, value: Any, change: Change) -> Any:
+def add_control(gui: GuiApi, control: Control, value: Any, change: Change, label: str = "") -> Any:
     """Add the widget of a control; a value that is refused goes back to what it was.
 
     Args:
@@ -22,8 +22,9 @@ def add_control(gui: GuiApi, control: Control, value: Any, change: Change) -> An
         control: What it sets.
         value: What it holds at first.
         change: What to do with what people set.
+        label: Its name for people, if not the control's own.
     """
-    handle = _made(gui, control, value)
+    handle = _made(gui, control, value, label or control.name)
     if handle is None:
         return None
     kept = [handle.value]
@@ -70,8 +71,8 @@ class Slider:
             self.handle.value = value
 
 
-def _made(gui: GuiApi, control: Control, value: Any) -> Any:
-    name, hint = control.name, control.text or None
+def _made(gui: GuiApi, control: Control, value: Any, name: str) -> Any:
+    hint = control.text or None
     match control.kind:
         case "bool":
             return gui.add_checkbox(name, bool(value), hint=hint)
@@ -80,20 +81,21 @@ def _made(gui: GuiApi, control: Control, value: Any) -> Any:
         case "choice":
             return gui.add_dropdown(name, control.choices, initial_value=value, hint=hint)
         case "vector":
-            return _vector(gui, control, tuple(map(float, value)))
+            return _vector(gui, control, tuple(map(float, value)), name)
         case "int" | "float":
-            return _number(gui, control, int(value) if control.kind == "int" else float(value))
+            number = int(value) if control.kind == "int" else float(value)
+            return _number(gui, control, number, name)
 
 
-def _number(gui: GuiApi, control: Control, value: float) -> Any:
+def _number(gui: GuiApi, control: Control, value: float, name: str) -> Any:
     low, high = control.low, control.high
     if low is None or high is None or high - low > WIDEST_SLIDER:
         kind = type(value)
         ends = (None if end is None else kind(end) for end in (low, high))
-        return gui.add_number(control.name, value, **_ends(*ends), hint=control.text or None)
+        return gui.add_number(name, value, **_ends(*ends), hint=control.text or None)
     step = 1 if isinstance(value, int) else step_of(high - low)
     return gui.add_slider(
-        control.name, type(value)(low), type(value)(high), step, value, hint=control.text or None
+        name, type(value)(low), type(value)(high), step, value, hint=control.text or None
     )
 
 
@@ -101,7 +103,7 @@ def _ends(low: float | None, high: float | None) -> dict[str, Any]:
     return {"min": low, "max": high}
 
 
-def _vector(gui: GuiApi, control: Control, value: tuple[float, ...]) -> Any:
+def _vector(gui: GuiApi, control: Control, value: tuple[float, ...], name: str) -> Any:
     made = {2: gui.add_vector2, 3: gui.add_vector3}.get(len(value))
     if made is None:
         return None
@@ -111,7 +113,7 @@ def _vector(gui: GuiApi, control: Control, value: tuple[float, ...]) -> Any:
         if bound is not None
     }
     any_size: Any = made
-    return any_size(control.name, value, **ends, step=0.01, hint=control.text or None)
+    return any_size(name, value, **ends, step=0.01, hint=control.text or None)
 
 
 def step_of(width: float) -> float:

@@ -16,6 +16,7 @@ import pytest
 
 from limbik.plugins.viewer.axes import from_page, to_page
 from limbik.plugins.viewer.session import LAST
+from limbik.tests.viewer.process import viewing
 from limbik.tests.viewer.scenes import Opened
 
 playwright = pytest.importorskip("playwright.sync_api", reason="the extra 'browser' is missing")
@@ -43,7 +44,7 @@ class Visit:
         self.page.on("request", lambda request: self._look_at(request.url))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.goto(f"{viewer.url}/?fixedDpr=1")
-        self.page.get_by_role("tab", name="Pose", exact=True).wait_for(timeout=1e3 * PATIENCE)
+        drawn(self.page)
         self.until(lambda: bool(viewer.page.server.get_clients()))
 
     def _look_at(self, url: str) -> None:
@@ -110,17 +111,24 @@ class Visit:
     def choose(self, now: str, wanted: str) -> None:
         """Choose from the list that shows what is chosen now."""
 
-        def lists() -> list[Any]:
-            boxes = self.page.locator("input:visible").all()
-            return [box for box in boxes if box.input_value() == now]
+        boxes = self.page.locator("input:visible")
 
-        self.until(lambda: bool(lists()))
-        lists()[0].click()
+        def shown() -> list[str]:
+            values: list[str] = boxes.evaluate_all("all => all.map(one => one.value)")
+            return values
+
+        self.until(lambda: now in shown())
+        boxes.nth(shown().index(now)).click()
         self.page.get_by_role("option", name=wanted, exact=True).click()
 
     def picture(self, path: Path) -> None:
         self.page.wait_for_timeout(500)
         self.page.screenshot(path=path)
+
+
+def drawn(page: Any) -> None:
+    """Wait until a page shows its panels."""
+    page.get_by_role("tab", name="Pose", exact=True).wait_for(timeout=1e3 * PATIENCE)
 
 
 Visiting = Callable[[str], Visit]
@@ -185,3 +193,25 @@ def test_scene_and_picture_can_be_taken_away(visit: Visiting, tmp_path: Path) ->
     assert "solver: 2d" in (tmp_path / "saved.yaml").read_text(encoding="utf-8")
     assert (tmp_path / "saved.png").read_bytes().startswith(b"\x89PNG")
     assert seen.outside == []
+
+
+def test_the_command_ends_with_its_last_page_and_not_with_a_reload() -> None:
+    with playwright.sync_playwright() as play, viewing("arm") as (process, url):
+        browser = play.chromium.launch(executable_path=CHROMIUM)
+        first = browser.new_page()
+        first.goto(url)
+        drawn(first)
+        first.reload()
+        drawn(first)
+        second = browser.new_page()
+        second.goto(url)
+        drawn(second)
+        first.close()
+        second.wait_for_timeout(7e3)  # longer than the server goes on without a page
+        assert process.poll() is None
+        second.close()
+        out, err = process.communicate(timeout=PATIENCE)
+        browser.close()
+    assert process.returncode == 0
+    assert out == ""
+    assert err.endswith("limbik: the last page was closed\n")

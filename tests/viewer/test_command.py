@@ -1,10 +1,8 @@
 """`limbik view` as a process: it says where it is, answers, and ends on Ctrl-C without a trace."""
 
 import os
-import re
 import signal
 import subprocess
-import sys
 import urllib.request
 from pathlib import Path
 
@@ -12,11 +10,7 @@ import pytest
 
 from limbik.core.errors import EnvironmentProblem, InputError
 from limbik.plugins.viewer import server
-from limbik.tests.viewer.scenes import CONFIGS
-
-
-def limbik(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "limbik", *arguments]
+from limbik.tests.viewer.process import limbik, viewing
 
 
 def test_without_viser_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,28 +43,11 @@ def test_a_scene_with_a_fault_is_no_reason_to_serve(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="sends a signal of POSIX")
 def test_it_serves_until_it_is_interrupted() -> None:
     pytest.importorskip("viser", reason="the extra 'view' is not installed")
-    ours = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background
-    try:  # ignores Ctrl-C, and so would what it starts
-        process = subprocess.Popen(
-            limbik("view", str(CONFIGS / "arm.yaml"), "--port", "0"),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=os.environ | {"PYTHONUNBUFFERED": "1"},
-        )
-    finally:
-        signal.signal(signal.SIGINT, ours)
-    assert process.stdout is not None
-    try:
-        said = process.stdout.readline()
-        found = re.search(r"is at (http://127\.0\.0\.1:\d+) ", said)
-        assert found, said
-        with urllib.request.urlopen(found[1], timeout=20) as answer:
+    with viewing("arm") as (process, url):
+        with urllib.request.urlopen(url, timeout=20) as answer:
             assert b"<html" in answer.read(4000).lower()
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=30)
-    finally:
-        process.kill()
     assert process.returncode == 0
     assert out == ""
     assert "Traceback" not in err

@@ -6,7 +6,8 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from limbik.core.params import model
-from limbik.core.settings import Settings
+from limbik.core.pole import PoleRotor
+from limbik.core.settings import Choose, Settings
 from limbik.core.slots import OPTIONS
 from limbik.plugins.viewer.controls import Control, controls, value_at
 
@@ -16,15 +17,32 @@ def paths(found: list[Control]) -> set[tuple[str, ...]]:
 
 
 def test_every_option_has_a_control_or_is_a_slot() -> None:
-    """Numbers by joint's name have none: what a scene gives them stays."""
     reached = {path[0] for path in paths(controls(Settings))}
-    assert reached | set(OPTIONS) | {"stiffness"} == set(Settings.model_fields)
+    assert reached | set(OPTIONS) == set(Settings.model_fields)
+    assert {path[1] for path in paths(controls(Settings)) if path[0] == "choose" and path[1:]} == (
+        set(Choose.model_fields)
+    )
+
+
+def test_a_table_by_joint_has_a_control_for_each() -> None:
+    found = {control.path: control for control in controls(Settings) if control.by_joint}
+    assert set(found) == {("stiffness",), ("choose", "pose"), ("choose", "weights")}
+    elbow = found["stiffness",].of_joint("elbow")
+    assert (elbow.path, elbow.kind, elbow.absent) == (("stiffness", "elbow"), "float", 0.0)
+    assert found["choose", "weights"].absent == 1.0
+    assert (found["choose", "pose"].kind, found["choose", "pose"].size) == ("vector", 3)
+
+
+def test_a_rotor_shows_all_it_has() -> None:
+    assert {path[0] for path in paths(controls(PoleRotor))} == set(PoleRotor.model_fields)
 
 
 def test_every_control_finds_its_value_in_the_settings() -> None:
     values = Settings().model_dump()
     for control in controls(Settings):
         held = value_at(values, control.path)
+        if control.by_joint:
+            continue
         if control.kind == "choice" and held is not None:
             assert held in control.choices
         if control.kind == "vector":
@@ -40,8 +58,11 @@ def test_ranges_and_meanings_come_from_the_model() -> None:
 def test_an_optional_group_is_a_switch_that_starts_with_something_valid() -> None:
     switches = {c.path: c for c in controls(Settings) if c.kind == "switch"}
     assert {("forbidden_cone",), ("choose",)} <= switches.keys()
-    for (name,), switch in switches.items():
-        assert getattr(Settings(**{name: switch.initial}), name) is not None
+    for path, switch in switches.items():
+        if len(path) == 1:
+            assert getattr(Settings(**{path[0]: switch.initial}), path[0]) is not None
+    pose = switches["choose", "pose"].initial
+    assert Choose(pose=pose, weights={}).pose == {}
 
 
 class Colour(IntEnum):

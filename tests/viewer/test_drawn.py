@@ -86,6 +86,27 @@ def test_a_hand_lies_on_its_arc(opened: Opened, name: str) -> None:
         np.testing.assert_allclose(arc.lines[-1, 0], arc.hand[0])
 
 
+def test_the_rim_of_a_cone_is_at_its_angles(opened: Opened) -> None:
+    session = opened("arm")
+    cone = {"use": "cone", "swing": (60.0, 30.0)}
+    session.change("arm", session.chain.setup.with_limit(0, cone))
+    shown = session.solve()["arm"]
+    chain, base = shown.solution.chain, shown.positions[0]
+    (rim,) = [arc for arc in arcs(shown, 2.0) if arc.axis == "own"]
+    zero = chain.base_rotation @ chain.frozen[0]
+    ways = (rim.lines[:, 1] - base) @ zero / 2.0
+    np.testing.assert_allclose(np.linalg.norm(ways, axis=1), 1.0)
+    tilts = np.degrees(np.arccos(ways[:, 2]))
+    assert tilts.max() == pytest.approx(60.0, abs=0.5)
+    assert tilts.min() == pytest.approx(30.0, abs=0.5)
+    assert np.abs(ways[tilts.argmax(), 0]) < 0.02  # the wide tilt is about x
+    pointer = (rim.hand[1] - rim.hand[0]) / 2.0
+    np.testing.assert_allclose(pointer, shown.rotations[0][:, 2], atol=1e-12)
+    free = {"use": "cone", "swing": (180.0, 180.0)}
+    session.change("arm", session.chain.setup.with_limit(0, free))
+    assert not [arc for arc in arcs(session.solve()["arm"], 2.0) if arc.axis == "own"]
+
+
 def test_arcs_are_marked_where_the_joint_rests_on_an_end(opened: Opened) -> None:
     session = opened("arm")
     session.move_goal("arm", np.array([18.0, 143.0, -60.0]))

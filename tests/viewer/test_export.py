@@ -49,6 +49,19 @@ def test_a_scene_with_everything_changed(opened: Opened, registry: Registry) -> 
     np.testing.assert_allclose(again(session, registry), shown.angles, atol=1e-12)
 
 
+def test_a_limit_of_its_own_and_options_by_joint(opened: Opened, registry: Registry) -> None:
+    session = opened("arm")
+    cone = {"use": "cone", "swing": (50.0, 40.0), "twist": (-20.0, 20.0)}
+    setup = session.chain.setup.with_limit(0, cone)
+    setup = setup.with_option(("stiffness", "elbow"), 0.5).with_option(("limit_ease",), 10.0)
+    setup = setup.with_option(("choose",), {"pose": {"wrist": (0.0, 10.0, 0.0)}})
+    setup = setup.with_option(("end_orientation",), 0.5)
+    session.change("arm", setup)
+    session.turn_goal("arm", np.radians([20.0, 10.0, 0.0]))
+    (shown,) = session.solve().values()
+    np.testing.assert_allclose(again(session, registry), shown.angles, atol=1e-12)
+
+
 def test_another_solver_with_a_turned_pole(opened: Opened, registry: Registry) -> None:
     session = opened("arm")
     setup = session.chain.setup.with_strategy("solver", {"use": "2d"})

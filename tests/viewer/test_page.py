@@ -3,6 +3,8 @@
 import math
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -173,9 +175,20 @@ def test_a_taken_port_is_passed_over(visit: Visiting, opened: Opened) -> None:
         second.close()
 
 
+def labels(client: Client) -> list[str]:
+    """The labels of all widgets."""
+    with client.viewer.page.session.lock:
+        known = client.viewer.page.server.gui._gui_input_handle_from_uuid.values()
+        return [getattr(handle, "label", "") for handle in known]
+
+
 def segments_of(client: Client, name: str, line: str) -> np.ndarray:
     """Ends of a line's segments, (k, 2, 3), in limbik's axes."""
     return to_page(client.viewer.page.drawings[name].lines[line].points)
+
+
+def _is_drawn(client: Client, line: str) -> bool:
+    return bool(np.abs(segments_of(client, "leg-pole", line)).any())
 
 
 def test_lines_end_where_they_should(visit: Visiting) -> None:
@@ -200,7 +213,7 @@ def test_lines_end_where_they_should(visit: Visiting) -> None:
         "FK component": np.stack([one.parts["FK"][:-1], one.parts["FK"][1:]], 1),
     }
     for line, ends in expected.items():
-        until(lambda line=line: np.abs(segments_of(client, "leg-pole", line)).any())  # type: ignore[misc]
+        until(partial(_is_drawn, client, line))
         np.testing.assert_allclose(segments_of(client, "leg-pole", line), ends, atol=1e-4)
     start, tip = segments_of(client, "leg-pole", "bend direction")[0]
     way = (tip - start) / np.linalg.norm(tip - start)
@@ -224,3 +237,67 @@ def test_the_panels_follow_the_chain_that_is_selected(visit: Visiting) -> None:
     until(lambda: "left_elbow" in client.widget("joint").options)
     client.set("with", "fabrik")
     until(lambda: page._other.visible)
+
+
+def test_serving_ends_a_while_after_the_last_page_was_closed(visit: Visiting) -> None:
+    first = visit("arm")
+    viewer = first.viewer
+    waiting = Thread(target=viewer.wait, args=(2.0,), daemon=True)
+    waiting.start()
+    until(lambda: viewer.pages == 1)
+    second = Client(viewer)
+    first.close()
+    until(lambda: viewer.pages == 1)
+    waiting.join(3.0)
+    assert waiting.is_alive()  # a second page keeps it
+    second.close()
+    until(lambda: viewer.pages == 0)
+    again = Client(viewer)  # somebody loads the page anew
+    waiting.join(3.0)
+    assert waiting.is_alive()
+    again.close()
+    waiting.join(PATIENCE)
+    assert not waiting.is_alive()
+
+
+def test_a_path_that_plays_takes_the_handle_along(visit: Visiting) -> None:
+    client = visit("planar")
+    page = client.viewer.page
+    gizmo = page.goals["planar"]
+    client.set("play", True)
+    until(lambda: page.session.frame > 1)
+    client.set("play", False)
+    until(lambda: np.allclose(gizmo._handle.position, to_page(page.session.chain.goal)))
+
+
+def test_a_handle_that_is_held_is_left_to_who_holds_it(visit: Visiting) -> None:
+    client = visit("planar")
+    page = client.viewer.page
+    handle, goal = page.goals["planar"]._handle, np.array([0.0, 1.4, 0.9])
+    beside = goal + np.array([0.3, 0.0, 0.0])  # off the plane, where the goal does not go
+    client.send(wire.TransformControlsDragStartMessage("/planar-goal"))
+    until(lambda: page.goals["planar"]._held)
+    client.drag("/planar-goal", to_page(beside))
+    until(lambda: np.allclose(page.session.chain.goal, goal))
+    page.act(lambda: None)
+    np.testing.assert_allclose(handle.position, to_page(beside))
+    client.drag("/planar-goal", to_page(beside), over=True)
+    until(lambda: np.allclose(handle.position, to_page(goal)))
+
+
+def test_an_option_by_joint_and_a_limit_are_set_from_the_page(visit: Visiting) -> None:
+    client = visit("arm")
+    session = client.viewer.page.session
+    client.set("elbow", 0.5)
+    until(lambda: session.chain.setup.settings.stiffness == {"elbow": 0.5})
+    client.set("choose", True)
+    until(lambda: "choose pose" in labels(client))
+    client.set("choose pose", True)
+    until(lambda: session.chain.setup.settings.model_dump()["choose"]["pose"] == {})
+    client.set("limit", "cone")
+    until(lambda: session.chain.setup.own[0] is not None)
+    until(lambda: "swing" in labels(client))
+    client.set("swing", (60.0, 35.0))
+    until(lambda: (session.chain.setup.own[0] or {})["swing"] == (60.0, 35.0))
+    client.set("limit", "ranges")
+    until(lambda: session.chain.setup.own[0] is None)

@@ -89,11 +89,13 @@ def test_frames_of_a_followed_path_are_what_solving_it_in_order_gives(opened: Op
     session = opened("scenarios/circle-from-rest")
     assert session.follow == session.chain.setup.given.follow
     session.follow = True
-    given = session.chain.setup.given
-    whole = solve_scene(replace(given, follow=True))
-    for frame in (30, 7, 31):
-        session.go_to(frame)
-        np.testing.assert_array_equal(only(session).angles, whole[frame].angles)
+    for solver in ("3d", "fabrik"):
+        setup = session.chain.setup.with_strategy("solver", {"use": solver})
+        session.change(session.chain.name, setup)
+        whole = solve_scene(replace(setup.scene, follow=True))
+        for frame in (30, 7, 31):
+            session.go_to(frame)
+            np.testing.assert_array_equal(only(session).angles, whole[frame].angles)
 
 
 def test_a_changed_option_is_used_for_the_past_of_a_path_too(opened: Opened) -> None:

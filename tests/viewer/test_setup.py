@@ -10,6 +10,7 @@ import pytest
 
 from limbik.core.errors import InputError, LimbikError
 from limbik.core.registry import Registry
+from limbik.core.rotation import hpb_to_matrix
 from limbik.plugins.viewer.session import Session
 from limbik.plugins.viewer.setup import Setup
 from limbik.tests.viewer.scenes import Opened
@@ -63,6 +64,52 @@ def test_solvers_that_do_not_take_the_chain_are_named_with_their_reason(arm: Set
     assert {"3d", "2d", "fabrik"} <= set(fit)
     assert "lambda-leg" in why
     assert why["lambda-leg"]
+
+
+def test_options_by_joint_are_set_one_joint_at_a_time(arm: Setup, opened: Opened) -> None:
+    goal = opened("arm").chain.goal + np.array([0.0, -20.0, 15.0])
+    setup = arm.with_option(("finish",), {"use": "none"})
+    stiff = setup.with_option(("stiffness", "shoulder"), 0.9)
+    assert stiff.with_option(("stiffness", "elbow"), 0.5).settings.stiffness == {
+        "shoulder": 0.9,
+        "elbow": 0.5,
+    }
+    assert np.abs(stiff.solve(goal).angles - setup.solve(goal).angles).max() > 1e-4
+    chosen = arm.with_option(("choose",), {}).with_option(("choose", "pose"), {})
+    chosen = chosen.with_option(("choose", "pose", "elbow"), (0.0, 40.0, 0.0))
+    assert chosen.settings.choose is not None
+    assert chosen.settings.choose.pose == {"elbow": (0.0, 40.0, 0.0)}
+    with pytest.raises(LimbikError, match="stiffness"):
+        arm.with_option(("stiffness", "shoulder"), 1.0)
+
+
+def test_a_joint_takes_a_limit_of_its_own_and_its_ranges_again(arm: Setup, opened: Opened) -> None:
+    goal = opened("arm").chain.goal
+    cone = {"use": "cone", "swing": (20.0, 20.0), "twist": (-10.0, 10.0)}
+    limited = arm.with_limit(0, cone)
+    assert limited.chain.joints[0].pitch is None
+    before = arm.solve(goal)
+    after = limited.solve(goal)
+    assert "shoulder cone" in after.limits_touched()
+    assert np.abs(after.angles - before.angles).max() > 0.01
+    back = limited.with_limit(0, None)
+    assert back.chain is arm.chain
+    np.testing.assert_array_equal(back.solve(goal).angles, before.angles)
+    with pytest.raises(LimbikError, match="belongs to the 3D solver"):
+        limited.with_strategy("solver", {"use": "fabrik"})
+    with pytest.raises(LimbikError, match="swing"):
+        arm.with_limit(0, {"use": "cone", "swing": (200.0, 20.0)})
+
+
+def test_the_end_takes_over_a_goals_turn_as_far_as_it_is_told(arm: Setup, opened: Opened) -> None:
+    goal, turn = opened("arm").chain.goal, np.radians([20.0, 10.0, 0.0])
+    assert not arm.takes_turn
+    free = arm.with_limit(3, {"use": "cone", "swing": (90.0, 90.0)})
+    taken = free.with_option(("end_orientation",), 1.0)
+    assert taken.takes_turn
+    turned = taken.solve(goal, turn).rotations[-1]
+    np.testing.assert_allclose(turned, hpb_to_matrix(turn), atol=0.2)
+    assert np.abs(free.solve(goal, turn).rotations[-1] - turned).max() > 0.2
 
 
 def test_going_to_2d_and_back_keeps_the_options_of_3d(arm: Setup, opened: Opened) -> None:

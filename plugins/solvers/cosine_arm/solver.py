@@ -44,22 +44,28 @@ def prepare(chain: Chain, settings: Settings, params: NoParams) -> Batch:
     )
     base = np.asarray(chain.base_position) + chain.base_rotation @ chain.offsets[0]
 
-    def solve(goals: Array, follow: bool) -> Solution:
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
         points = np.ascontiguousarray(Z_UP.points((goals - base) @ chain.base_rotation))
-        return _solve(chain, size, goals, points, follow)
+        start = chain.rest if near is None else near
+        return _solve(chain, size, goals, points, follow, start)
 
     return solve
 
 
 def _solve(
-    chain: Chain, size: tuple[float, float, float], goals: Array, points: Array, follow: bool
+    chain: Chain,
+    size: tuple[float, float, float],
+    goals: Array,
+    points: Array,
+    follow: bool,
+    start: Array,
 ) -> Solution:
     from limbik.plugins.solvers.cosine_arm.arm import FLAGS
     from limbik.plugins.solvers.cosine_arm.kernels import solve_goals
 
     low, high = chain.low[TURNING].copy(), chain.high[TURNING].copy()
     found, codes = np.empty((len(goals), 3)), np.empty((len(goals), 2))
-    near = chain.rest[TURNING].copy()
+    near = start[TURNING].copy()
     solve_goals(size, low, high, near, points, follow, np.empty((4, 3)), found, codes)
     angles = np.zeros((len(goals), len(chain), 3))
     angles[:, TURNING[0], TURNING[1]] = found

@@ -24,7 +24,7 @@ class Rounds(NamedTuple):
 def prepare(chain: Chain, settings: Settings, params: Rounds) -> Batch:
     """Make the solver ready; it takes every chain."""
 
-    def solve(goals: Array, follow: bool) -> Solution:
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
         from limbik.plugins.solvers.fabrik.kernels import Limb, solve_goals
 
         position = np.array([chain.base_position], np.float64)
@@ -33,8 +33,8 @@ def prepare(chain: Chain, settings: Settings, params: Rounds) -> Batch:
         )
         points = np.ascontiguousarray(goals, np.float64)
         angles, numbers = np.empty((len(points), len(chain), 3)), np.empty((len(points), 2))
-        near = chain.rest.copy()
-        solve_goals(limb, points, settings.tolerance, params.rounds, follow, near, angles, numbers)
+        start = np.array(chain.rest if near is None else near)
+        solve_goals(limb, points, settings.tolerance, params.rounds, follow, start, angles, numbers)
         status, rounds = numbers.astype(np.int64).T
         return assemble(chain, points, angles, status, rounds, [""] * len(points))
 

@@ -67,20 +67,21 @@ def prepare(chain: Chain, settings: Settings, params: Foot) -> Batch:
     require_frozen(chain, 2, ANKLE, "[90, 90, 0], or [-90, 90, 0] of a left leg", NAME)
     lengths = require_offset(chain, 1, 2, NAME), require_offset(chain, 2, 2, NAME)
 
-    def solve(goals: Array, follow: bool) -> Solution:
-        return _solve(chain, lengths, params, goals, follow)
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
+        start = chain.rest if near is None else near
+        return _solve(chain, lengths, params, goals, follow, start)
 
     return solve
 
 
 def _mirrored(chain: Chain, settings: Settings, params: Foot) -> Batch:
     """Solve a left leg as the right one it mirrors."""
-    flip = np.array([-1.0, 1.0, 1.0])
+    flip, sense = np.array([-1.0, 1.0, 1.0]), np.array([-1.0, 1.0, -1.0])
     right = prepare(chain.mirrored(), settings, Foot(-params.r, params.t, -params.p))
 
-    def solve(goals: Array, follow: bool) -> Solution:
-        found = right(goals * flip, follow)
-        angles = found.angles * np.array([-1.0, 1.0, -1.0])
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
+        found = right(goals * flip, follow, None if near is None else near * sense)
+        angles = found.angles * sense
         status, iterations = np.asarray(found.status), np.asarray(found.iterations)
         return assemble(chain, goals, angles, status, iterations, getattr(found, "notes", ()))
 
@@ -102,13 +103,18 @@ def _poses(chain: Chain, foot: Foot, goals: Array) -> Array:
 
 
 def _solve(
-    chain: Chain, lengths: tuple[float, float], foot: Foot, goals: Array, follow: bool
+    chain: Chain,
+    lengths: tuple[float, float],
+    foot: Foot,
+    goals: Array,
+    follow: bool,
+    start: Array,
 ) -> Solution:
     from limbik.plugins.solvers.lambda_leg.leg import LambdaLeg, flag_words
 
     ends = SENSE * chain.low[TURNING], SENSE * chain.high[TURNING]
     leg = LambdaLeg(*lengths, np.minimum(*ends), np.maximum(*ends))
-    near = SENSE * chain.rest[TURNING]
+    near = SENSE * start[TURNING]
     found, codes = leg.solve_many(_poses(chain, foot, goals), near, follow)
     angles = np.zeros((len(goals), len(chain), 3))
     angles[:, TURNING[0], TURNING[1]] = SENSE * found

@@ -134,6 +134,7 @@ class PlanarArm:
         most: int = 100,
         follow: bool = False,
         step: float = 0.0,
+        continued: bool = False,
     ) -> PlanarResult:
         """Reach goals within limits, or say that they are out of reach.
 
@@ -145,6 +146,7 @@ class PlanarArm:
             most: Sweeps at most from each starting pose.
             follow: Whether the goals are a path, each solved from the pose before.
             step: Largest turn of a joint from goal to goal of a path [rad]; 0 = unbounded.
+            continued: Whether the path comes from `start`, so that its first step is bounded too.
 
         Raises:
             InputError: The goals are not (m, 2) finite numbers.
@@ -162,6 +164,7 @@ class PlanarArm:
             most,
             step,
             follow,
+            continued,
             pose,
             angles,
             numbers,

@@ -199,7 +199,7 @@ def _solve(
         if number == 0 and n <= MOST_DECIDED:
             known_out = not decide(links, tx, ty, work)
         elif number == 0:
-            known_out = hypot(tx, ty) > links.lengths.sum() + tolerance
+            known_out = hypot(tx, ty) > float(links.lengths.sum()) + tolerance
         if known_out:
             starts = STARTS_OUT_OF_REACH
     if known_out:
@@ -218,6 +218,7 @@ def solve_goals(
     most: int,
     step: float,
     chained: bool,
+    continued: bool,
     start: Array,
     angles: Array,
     numbers: Array,
@@ -236,6 +237,8 @@ def solve_goals(
         most: Sweeps at most from each starting pose.
         step: Largest turn of a joint from goal to goal [rad]; 0 = unbounded. Only when chained.
         chained: Whether the goals are a path.
+        continued: Whether the path comes from `start`: its first step is bounded too, and no other
+            pose is tried at its first goal.
         start: Relative angles, (n,) [rad].
         angles: OUT: relative angles, (m, n) [rad], within limits.
         numbers: OUT: status, sweeps, distance [length], (m, 3).
@@ -245,7 +248,7 @@ def solve_goals(
     bounded = chained and step > 0.0
     poses, counts = np.empty_like(angles), np.empty_like(numbers)
     least = inf
-    for way in range(WAYS if bounded else 1):
+    for way in range(WAYS if bounded and not continued else 1):
         for k in range(start.shape[0]):
             work.near[k] = nearest_clamp(start[k], links.low[k], links.high[k])
         if way > 0:
@@ -261,6 +264,7 @@ def solve_goals(
             most,
             step if bounded else 0.0,
             chained,
+            continued,
             work,
             poses,
             counts,
@@ -286,6 +290,7 @@ def _follow(
     most: int,
     step: float,
     chained: bool,
+    continued: bool,
     work: Scratch,
     angles: Array,
     numbers: Array,
@@ -295,7 +300,7 @@ def _follow(
     for k in range(n):
         box.low[k], box.high[k] = links.low[k], links.high[k]
     for row in range(goals.shape[0]):
-        if step > 0.0 and row > 0:
+        if step > 0.0 and (row > 0 or continued):
             _bound_steps(links, box, step, work)
         tx, ty = goals[row, 0], goals[row, 1]
         state, sweeps = _solve(method, box, tx, ty, tolerance, most, work)

@@ -116,7 +116,7 @@ def prepare_robust(chain: Chain, settings: Settings, params: Robust, method: str
     """
     plane = read_plane(chain, f"planar-{method}")
 
-    def solve(goals: Array, follow: bool) -> Solution:
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
         from limbik.plugins.solvers.planar.arm import PlanarArm
 
         low, high = chain.low[:-1, 1] + plane.shift, chain.high[:-1, 1] + plane.shift
@@ -124,11 +124,12 @@ def prepare_robust(chain: Chain, settings: Settings, params: Robust, method: str
         found = arm.solve(
             _points(chain, plane, goals),
             method,
-            chain.rest[:-1, 1] + plane.shift,
+            (chain.rest if near is None else near)[:-1, 1] + plane.shift,
             settings.tolerance,
             params.sweeps,
             follow,
             params.step,
+            near is not None,
         )
         pitches = _near_range(chain, found.angles - plane.shift)
         if not np.isinf(low).any():
@@ -146,12 +147,12 @@ def prepare_article(chain: Chain, settings: Settings, params: Literal, method: s
     """
     plane = read_plane(chain, f"article-{method}")
 
-    def solve(goals: Array, follow: bool) -> Solution:
+    def solve(goals: Array, follow: bool, near: Array | None = None) -> Solution:
         from limbik.plugins.solvers.planar.arm import PlanarArm
 
         low, high = chain.low[:-1, 1] + plane.shift, chain.high[:-1, 1] + plane.shift
         arm = PlanarArm(plane.lengths, low, high)
-        pose = start = chain.rest[:-1, 1] + plane.shift
+        pose = start = (chain.rest if near is None else near)[:-1, 1] + plane.shift
         rows, numbers = np.empty((len(goals), len(plane.lengths))), np.empty((2, len(goals)))
         for row, point in enumerate(_points(chain, plane, goals)):
             pose, used, left = arm.sweeps(
