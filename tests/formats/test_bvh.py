@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from limbik.core.baking import bake_scene
+from limbik.core import bodyscene
+from limbik.core.baking import bake_body, bake_scene
 from limbik.core.errors import InputError, SceneError
 from limbik.core.frames import Y_UP
 from limbik.core.pose import forward_kinematics
@@ -373,3 +374,19 @@ def test_inspection_names_chains_that_can_be_read(walk: Path) -> None:
     ends = [(base, end) for base, end, _ in found.chains]
     assert ends == [("LeftHip", "LeftAnkle"), ("RightHip", "RightAnkle")]
     assert all(len(body_of(walk, base, end).chain) == 3 for base, end in ends)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_positions_are_those_of_pybvh(tmp_path: Path) -> None:
+    """Of a clip as it is, and of one with turned joints that limbik has written."""
+    pybvh = pytest.importorskip("pybvh")
+    shipped = Path(__file__).parents[2] / "configs"
+    body = bake_body(bodyscene.read_body(shipped / "body.yaml", REGISTRY), REGISTRY)
+    (tmp_path / "body.bvh").write_text(bvh_out.write_body(body))
+    for path in (shipped / "walk.bvh", tmp_path / "body.bvh"):
+        clip, other = read_bvh(path), pybvh.read_bvh_file(str(path))
+        places, _ = clip_motion(clip).world()
+        names = [node.name for node in other.nodes]
+        for index, name in enumerate(clip.names):
+            expected = other.node_positions()[:, names.index(name)]
+            np.testing.assert_allclose(Y_UP.points(places[:, index]), expected, atol=1e-6)
