@@ -97,7 +97,6 @@ def test_a_baked_clip_read_back_has_the_solved_angles(
     written.write_text(bvh_out.write(bake))
     back = replace(scene.body, clip=read_bvh(written))  # type: ignore[type-var]
     assert isinstance(back, ClipBody)
-    assert back.clip is not None
     assert back.join is not None
     for k, index in enumerate(back.at[:-1]):
         joint = back.clip.joints[index]
@@ -115,7 +114,6 @@ def test_all_but_the_solved_joints_stays_as_it_was(walk: Path, scene_of: Solve) 
     angles = bake_scene(scene, REGISTRY).solution.angles
     body = scene.body
     assert isinstance(body, ClipBody)
-    assert body.clip is not None
     baked = body.baked(angles)
     changed = np.flatnonzero((baked.frames != body.clip.frames).any(axis=0))
     assert set(changed) <= {6, 7, 8, 12, 13, 14}
@@ -125,7 +123,6 @@ def test_all_but_the_solved_joints_stays_as_it_was(walk: Path, scene_of: Solve) 
 def test_a_clips_own_angles_go_through_the_chain_unharmed(walk: Path) -> None:
     """The clip's rotations as the chain's angles give the clip's channels back."""
     body = body_of(walk, "LeftHip", "LeftAnkle")
-    assert body.clip is not None
     assert body.join is not None
     angles = []
     for k, index in enumerate(body.at):
