@@ -187,9 +187,23 @@ def _compiled(function: Any) -> Any:
             no_cfunc_wrapper=True,
             **_OPTIONS,
         )
-        _COMPILED[id(plain)] = (plain, inner(copy))
+        _COMPILED[id(plain)] = (plain, _of_plain_types(inner(copy)))
         fill()
     return _COMPILED[id(plain)][1]
+
+
+def _of_plain_types(dispatcher: Any) -> Any:
+    """Let calls that differ in a constant alone share one version, which is then compiled once.
+
+    The constant is put in when the call is inlined.
+    """
+    template = dispatcher.get_call_template
+
+    def get_call_template(arguments: Any, keywords: Any) -> Any:
+        return template(tuple(map(_types.unliteral, arguments)), keywords)
+
+    dispatcher.get_call_template = get_call_template
+    return dispatcher
 
 
 def _takes_record(function: FunctionType) -> bool:

@@ -138,16 +138,12 @@ class WholeSolver:
         continuity: Continuity | None = None,
         trace: bool = False,
     ) -> Solution:
-        """Solve one goal.
-
-        Of a continuity the pose counts, which the solver starts from. What else limbik's own solver
-        takes is of no use here.
-        """
+        """Solve one goal, from the pose of a continuity; what else is given is of no use here."""
         near = continuity.angles if continuity is not None and continuity.known else None
         turns = None if goal_turn is None else goal_turn[None]
-        places = np.asarray(goal, np.float64)[None]
-        one = solve_turned(self._batch, places, turns, near is not None, near).single(0)
-        return replace(one, continuity=Continuity.from_pose(one.angles))
+        goals = np.asarray(goal, np.float64)[None]
+        found = solve_turned(self._batch, goals, turns, near is not None, near).single(0)
+        return replace(found, continuity=Continuity.from_pose(found.angles))
 
     def solve_many(
         self, goals: Array, *, goal_turns: Array | None = None, fk_offsets: Array | None = None

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.chain import SHORTEST, Chain
+from limbik.core.kernels.reach import least_reach
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 
@@ -17,8 +18,7 @@ def reach_range(chain: Chain) -> tuple[float, float]:
     Args:
         chain: The chain.
     """
-    longest = float(chain.lengths.max())
-    return max(0.0, 2.0 * longest - chain.length), chain.length
+    return least_reach(chain.length, float(chain.lengths.max())), chain.length
 
 
 def pull_into_reach(chain: Chain, goals: ArrayLike) -> Array:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from limbik.core.chain import AXES, Chain
 from limbik.core.errors import InputError
 from limbik.core.jointlimits import Limits, margin_of
+from limbik.core.kernels.memory import AIM_BASE, AIM_ROOT, ANGLES, BEND, FLAGS, HAS_POSE
 from limbik.core.rotation import Array
 
 AT_LIMIT = 1e-7  # [rad]; an axis this near to the end of its range rests on it
@@ -97,36 +98,36 @@ class Continuity:
                 f"not {bend_reference}"
             )
         memory = np.zeros((len(pose) + 4, 3))
-        memory[0] = pose[0]
-        memory[1] = pose[bend_reference - 1]
-        memory[3, 0] = 1.0
-        memory[4:] = pose
+        memory[AIM_BASE] = pose[0]
+        memory[AIM_ROOT] = pose[bend_reference - 1]
+        memory[FLAGS, HAS_POSE] = 1.0
+        memory[ANGLES:] = pose
         return cls(memory)
 
     @property
     def known(self) -> bool:
         """Whether it holds a pose."""
-        return bool(self.memory[3, 0] > 0.0)
+        return bool(self.memory[FLAGS, HAS_POSE] > 0.0)
 
     @property
     def aim_base(self) -> Array:
         """Base angles of the aim pose, HPB [rad], (3,)."""
-        return np.asarray(self.memory[0])
+        return np.asarray(self.memory[AIM_BASE])
 
     @property
     def aim_root(self) -> Array:
         """Bend root's angles of the aim pose, HPB [rad], (3,)."""
-        return np.asarray(self.memory[1])
+        return np.asarray(self.memory[AIM_ROOT])
 
     @property
     def bend_vector(self) -> Array:
         """Bend vector in the world, (3,); zeros when there was none yet."""
-        return np.asarray(self.memory[2])
+        return np.asarray(self.memory[BEND])
 
     @property
     def angles(self) -> Array:
         """Angles of the finished pose, HPB [rad], (n, 3)."""
-        return np.asarray(self.memory[4:])
+        return np.asarray(self.memory[ANGLES:])
 
     def reset(self) -> None:
         """Forget the past, in place."""

@@ -1,5 +1,7 @@
 """What goes into a solve, checked, and the arrays it writes into."""
 
+from typing import NamedTuple, Self
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -12,24 +14,30 @@ from limbik.core.wording import near_match
 LARGEST = 1e100  # squares of larger numbers overflow
 
 
-class Arrays:
+class Arrays(NamedTuple):
     """What a solve of m goals writes into."""
 
-    __slots__ = ("angles", "numbers", "positions", "rotations", "trace")
+    angles: Array
+    positions: Array
+    rotations: Array
+    numbers: Array
+    trace: Array
 
-    def __init__(self, m: int, n: int, stages: int, columns: int) -> None:
-        self.angles: Array = np.empty((m, n, 3))
-        self.positions: Array = np.empty((m, n, 3))
-        self.rotations: Array = np.empty((m, n, 3, 3))
-        self.numbers: Array = np.empty((m, columns))
-        self.trace: Array = np.empty((stages, n, 3))
+    @classmethod
+    def empty(cls, m: int, n: int, stages: int, columns: int) -> Self:
+        """Make them for m goals of n joints."""
+        angles, positions = np.empty((m, n, 3)), np.empty((m, n, 3))
+        numbers, trace = np.empty((m, columns)), np.empty((stages, n, 3))
+        return cls(angles, positions, np.empty((m, n, 3, 3)), numbers, trace)
 
-    def part(self, rows: slice) -> "Arrays":
-        """Return views of some rows."""
-        views = Arrays(0, self.angles.shape[1], 0, 0)
-        views.angles, views.positions = self.angles[rows], self.positions[rows]
-        views.rotations, views.numbers = self.rotations[rows], self.numbers[rows]
-        return views
+    def part(self, rows: slice) -> Self:
+        """Return views of some rows, all with the one trace."""
+        return self._replace(
+            angles=self.angles[rows],
+            positions=self.positions[rows],
+            rotations=self.rotations[rows],
+            numbers=self.numbers[rows],
+        )
 
 
 def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
@@ -90,7 +98,8 @@ def checked_memory(values: Array, joints: int) -> Array:
 
 
 def _shown(shape: tuple[int | None, ...]) -> str:
-    return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
+    sizes = ["m" if size is None else str(size) for size in shape]
+    return f"({', '.join(sizes)}{',' * (len(sizes) == 1)})"
 
 
 def check_joints(chain: Chain, settings: Settings, first: int) -> None:

@@ -6,14 +6,14 @@ from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import PluginError
+from limbik.core.errors import InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
 from limbik.core.jointlimits import bound_limits
@@ -47,8 +47,7 @@ class Solver:
 
     Raises:
         ChainError: The bend reference is not a joint of this chain.
-        InputError: A strategy is unknown or its parameters are wrong.
-        pydantic.ValidationError: An option is out of its range.
+        InputError: An option is unknown or out of its range, or a strategy is or its parameters.
     """
 
     _slots: ClassVar[tuple[str, ...]] = SLOT_ORDER
@@ -61,9 +60,7 @@ class Solver:
         registry: Registry | None = None,
         **options: Any,
     ) -> None:
-        given = settings or Settings()
-        if options:
-            given = Settings(**{**given.model_dump(exclude_unset=True), **options})
+        given = _joined(settings or Settings(), options)
         self._check_fit(chain, given)
         self.chain = chain
         self.settings = given
@@ -76,11 +73,11 @@ class Solver:
         self._none = np.zeros((len(chain), 3))
         self._fresh = np.zeros((len(chain) + 4, 3))
 
-    def altered(self, **options: Any) -> "Solver":
+    def altered(self, **options: Any) -> Self:
         """Return a solver of the same kind with some settings changed."""
-        return Solver(self.chain, self._altered(options), self.registry)
+        return self._alike(self.chain, _joined(self.settings, options))
 
-    def mirrored(self) -> "Solver":
+    def mirrored(self) -> Self:
         """Return the solver of the chain mirrored in the world's YZ plane (M-14).
 
         It answers mirrored goals with the mirrored poses.
@@ -88,9 +85,9 @@ class Solver:
         from limbik.core.mirror import mirrored_settings
 
         settings = mirrored_settings(self.settings, self.strategies)
-        return Solver(self.chain.mirrored(), settings, self.registry)
+        return self._alike(self.chain.mirrored(), settings)
 
-    def moved(self, position: Array, rotation: Array) -> "Solver":
+    def moved(self, position: Array, rotation: Array) -> Self:
         """Return this solver for its chain with the base elsewhere, in a few microseconds.
 
         Args:
@@ -107,8 +104,9 @@ class Solver:
         found._fixed = (body, *self._fixed[1:])
         return found
 
-    def _altered(self, options: dict[str, Any]) -> Settings:
-        return Settings(**{**self.settings.model_dump(exclude_unset=True), **options})
+    def _alike(self, chain: Chain, settings: Settings) -> Self:
+        """Return a solver of this kind for another chain or other settings."""
+        return type(self)(chain, settings, self.registry)
 
     @staticmethod
     def _check_fit(chain: Chain, settings: Settings) -> None:
@@ -134,7 +132,7 @@ class Solver:
         solve_rows = self._entry()
         if not isinstance(solve_rows, Entry):
             return solve_rows
-        out = Arrays(1, len(self.chain), 0, self._columns)
+        out = Arrays.empty(1, len(self.chain), 0, self._columns)
         # Strategies are but addresses here and compiled later: `limbik.core.warm` has time.
         plugs = flat_plugs(self.chain, self.settings, {}, (None,) * len(self.chain))
         return solve_rows.direct(
@@ -222,18 +220,16 @@ class Solver:
     ) -> Solution:
         """Solve a path in order, each goal with the continuity of the one before.
 
+        Goals, offsets, turns and errors are those of `solve_many`.
+
         Args:
             goals: World positions, (m, 3) [length].
-            fk_offsets: As in `solve`, one set for all goals.
+            fk_offsets: HPB, (n, 3) [rad].
             continuity: State before the first goal; None for the rest pose's.
-            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
+            goal_turns: HPB, (m, 3) [rad].
 
         Returns:
             A solution with a leading goal axis and the continuity after the last goal.
-
-        Raises:
-            InputError: The goals or the offsets are not finite or have another shape.
-            PluginError: A strategy gave a result that is not a number.
         """
         rows = self._rows(checked(goals, (None, 3), "goals"), goal_turns)
         return self._follow_rows(rows, fk_offsets, continuity)
@@ -248,7 +244,7 @@ class Solver:
         """Solve one row, (1, k): the goal, then what else the kernel takes for each."""
         memory = self._memory(continuity)
         stages = len(self._early_stages) + max(self.settings.max_iterations, 0) + len(_LATE_STAGES)
-        out = Arrays(1, len(self.chain), stages if trace else 0, self._columns)
+        out = Arrays.empty(1, len(self.chain), stages if trace else 0, self._columns)
         count = self._run(rows, self._offsets(fk_offsets), memory, False, out)
         numbers = out.numbers[0].tolist()
         if numbers[2] >= FAILED:
@@ -275,7 +271,9 @@ class Solver:
     ) -> Solution:
         """Solve rows, (m, k), that have nothing to do with each other."""
         fk = self._offsets(fk_offsets)
-        out = Arrays(len(rows), len(self.chain), 0, self._columns)
+        out = Arrays.empty(len(rows), len(self.chain), 0, self._columns)
+        if threads is not None and threads < 1:
+            raise InputError(f"threads: expected at least 1, found {threads}")
         workers = min(threads or os.cpu_count() or 1, max(len(rows) // THREAD_SHARE, 1))
         bounds = np.linspace(0, len(rows), workers + 1).astype(int).tolist()
         parts = [slice(a, b) for a, b in pairwise(bounds)]
@@ -296,7 +294,7 @@ class Solver:
     ) -> Solution:
         """Solve rows, (m, k), in order."""
         memory = self._memory(continuity)
-        out = Arrays(len(rows), len(self.chain), 0, self._columns)
+        out = Arrays.empty(len(rows), len(self.chain), 0, self._columns)
         self._run(rows, self._offsets(fk_offsets), memory, True, out)
         return self._many(rows, out, Continuity(memory))
 
@@ -325,19 +323,7 @@ class Solver:
     def _arguments(
         self, plugs: Plugs, goals: Array, fk: Array, memory: Array, chained: bool, out: Arrays
     ) -> tuple[Any, ...]:
-        return (
-            *self._fixed,
-            plugs,
-            goals,
-            fk,
-            memory,
-            chained,
-            out.angles,
-            out.positions,
-            out.rotations,
-            out.numbers,
-            out.trace,
-        )
+        return (*self._fixed, plugs, goals, fk, memory, chained, *out)
 
     def _blame(self, failure: int, goal: Array) -> PluginError:
         """Return the error of a strategy whose result is not a number."""
@@ -392,6 +378,15 @@ class Solver:
             bend_angle=out.numbers[:, 6],
             continuity=continuity,
         )
+
+
+def _joined(settings: Settings, options: dict[str, Any]) -> Settings:
+    """Return settings with single ones replaced, checked again."""
+    if not options:
+        return settings
+    from limbik.core.validation import read_model
+
+    return read_model(Settings, {**settings.model_dump(exclude_unset=True), **options})
 
 
 _LATE_STAGES = ("finish", "choice")

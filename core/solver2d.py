@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,8 +44,7 @@ class Solver2D(Solver):
 
     Raises:
         ChainError: The bend reference is not a joint of this chain.
-        InputError: A setting belongs to the 3D solver, or a strategy or its parameters are wrong.
-        pydantic.ValidationError: An option is out of its range.
+        InputError: As for `Solver`, or a setting belongs to the 3D solver.
     """
 
     _slots: ClassVar[tuple[str, ...]] = ("initial_bend",)
@@ -94,6 +93,10 @@ class Solver2D(Solver):
         found: Planar = self._fixed[2]
         return found
 
+    @_planar.setter
+    def _planar(self, planar: Planar) -> None:
+        self._fixed = (*self._fixed[:2], planar)
+
     def _entry(self) -> Callable[..., int]:
         from limbik.core.kernels.solve2d import solve_plane_goals
 
@@ -111,21 +114,18 @@ class Solver2D(Solver):
     ) -> PlanarSolution:
         """Put the chain's end on a goal, bent toward the pole.
 
+        As `Solver.solve`, with a pole.
+
         Args:
             goal: World position, (3,) [length].
-            fk_offsets: FK component relative to the rest pose, HPB, (n, 3) [rad].
-            continuity: What an earlier solve returned; None solves without a past (M-02).
+            fk_offsets: HPB, (n, 3) [rad].
+            continuity: What an earlier solve returned.
             trace: Whether to return every stage's pose.
             pole: Another position for the pole, (3,) [length].
-            goal_turn: How the goal is turned in the world, HPB, (3,) [rad], or NaNs; moves a
-                rotor only.
+            goal_turn: HPB, (3,) [rad]; moves a rotor only.
 
         Returns:
             The pose with status, distance, IK plane and the continuity for a next solve.
-
-        Raises:
-            InputError: Something given is not finite or has another shape.
-            PluginError: The initial-bend method gave a result that is not a number.
         """
         goals = checked(goal, (3,), "goal").reshape(1, 3)
         poles = None if pole is None else checked(pole, (3,), "pole").reshape(1, 3)
@@ -144,19 +144,14 @@ class Solver2D(Solver):
     ) -> PlanarSolution:
         """Solve goals that have nothing to do with each other, on all cores.
 
+        As `Solver.solve_many`, with poles.
+
         Args:
             goals: World positions, (m, 3) [length].
-            fk_offsets: As in `solve`, one set for all goals.
+            fk_offsets: HPB, (n, 3) [rad].
             threads: How many to use; None for as many as there are cores.
             poles: Other positions for the pole, (m, 3) [length].
-            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
-
-        Returns:
-            A solution whose arrays have a leading goal axis; bit for bit what `solve` gives.
-
-        Raises:
-            InputError: Something given is not finite or has another shape.
-            PluginError: The initial-bend method gave a result that is not a number.
+            goal_turns: HPB, (m, 3) [rad].
         """
         points = checked(goals, (None, 3), "goals")
         asked = self._ask_many(points, poles, goal_turns)
@@ -173,19 +168,14 @@ class Solver2D(Solver):
     ) -> PlanarSolution:
         """Solve a path in order, each goal with the continuity of the one before.
 
+        As `Solver.follow`, with poles.
+
         Args:
             goals: World positions, (m, 3) [length].
-            fk_offsets: As in `solve`, one set for all goals.
+            fk_offsets: HPB, (n, 3) [rad].
             continuity: State before the first goal; None for the rest pose's.
             poles: Other positions for the pole, (m, 3) [length].
-            goal_turns: How the goals are turned, HPB, (m, 3) [rad]; NaNs for goals without.
-
-        Returns:
-            A solution with a leading goal axis and the continuity after the last goal.
-
-        Raises:
-            InputError: Something given is not finite or has another shape.
-            PluginError: The initial-bend method gave a result that is not a number.
+            goal_turns: HPB, (m, 3) [rad].
         """
         points = checked(goals, (None, 3), "goals")
         asked = self._ask_many(points, poles, goal_turns)
@@ -194,67 +184,48 @@ class Solver2D(Solver):
     def bind(self, goal: ArrayLike | None = None) -> "Solver2D":
         """Return this solver bound to the rest pose: there the pose stays (M-04).
 
-        See `limbik.core.bind.bound`.
+        See `limbik.core.bind.bound`. Altered or mirrored it stays bound.
         """
         from limbik.core.bind import bound
 
         return bound(self, goal)
 
-    def altered(self, **options: Any) -> "Solver2D":
-        """Return a solver with some settings changed; a bound one stays bound."""
-        found = Solver2D(self.chain, self._altered(options), self.registry, pole=self.pole)
-        ours, theirs = self._planar, found._planar
-        if ours.bound.any() or ours.pole_turn or ours.keeps_shape != theirs.keeps_shape:
-            return found.variant(
-                theirs._replace(
-                    keeps_shape=ours.keeps_shape, pole_turn=ours.pole_turn, bound=ours.bound
-                )
-            )
-        return found
-
-    def mirrored(self) -> "Solver2D":
-        """Return the solver of the mirrored chain, the pole mirrored too; a bound one stays so."""
-        from limbik.core.mirror import mirrored_settings
-
+    def mirrored(self) -> Self:
+        """Return the solver of the chain and the pole mirrored in the world's YZ plane (M-14)."""
         x, y, z = self.pole.position
-        found = Solver2D(
-            self.chain.mirrored(),
-            mirrored_settings(self.settings, self.strategies),
-            self.registry,
-            pole=self.pole.model_copy(update={"position": (-x, y, z)}),
-        )
-        ours = self._planar
-        found._fixed = (
-            *found._fixed[:2],
-            found._planar._replace(
-                keeps_shape=ours.keeps_shape, pole_turn=-ours.pole_turn, bound=ours.bound
-            ),
-        )
+        found = super().mirrored().with_pole(np.array([-x, y, z]))
+        found._planar = found._planar._replace(pole_turn=-self._planar.pole_turn)
         return found
 
-    def moved(self, position: Array, rotation: Array) -> "Solver2D":
+    def moved(self, position: Array, rotation: Array) -> Self:
         """Return this solver for its chain with the base elsewhere; the pole stays."""
         found = super().moved(position, rotation)
-        assert isinstance(found, Solver2D)
         turn = rotation @ self.chain.base_rotation.T
-        planar = self._planar._replace(
+        found._planar = self._planar._replace(
             rest_direction=np.ascontiguousarray(turn @ self._planar.rest_direction),
             rest_axis=np.ascontiguousarray(turn @ self._planar.rest_axis),
         )
-        found._fixed = (*found._fixed[:2], planar)
         return found
 
-    def with_pole(self, position: Array) -> "Solver2D":
+    def with_pole(self, position: Array) -> Self:
         """Return this solver with its pole elsewhere, (3,) [length]; the rotor stays."""
         x, y, z = position.tolist()
         found = copy(self)
         found.pole = self.pole.model_copy(update={"position": (x, y, z)})
         return found
 
-    def variant(self, planar: Planar, **options: Any) -> "Solver2D":
+    def variant(self, planar: Planar, **options: Any) -> Self:
         """Return a solver with other planar numbers and settings, for `limbik.core.bind`."""
-        found = Solver2D(self.chain, self._altered(options), self.registry, pole=self.pole)
-        found._fixed = (*found._fixed[:2], planar)
+        found = self.altered(**options)
+        found._planar = planar
+        return found
+
+    def _alike(self, chain: Chain, settings: Settings) -> Self:
+        found = type(self)(chain, settings, self.registry, pole=self.pole)
+        ours = self._planar
+        found._planar = found._planar._replace(
+            keeps_shape=ours.keeps_shape, pole_turn=ours.pole_turn, bound=ours.bound
+        )
         return found
 
     def _ask_many(

@@ -120,6 +120,21 @@ def test_raising_strategy_fills_its_result_with_nan_and_nothing_else_happens() -
     assert np.isnan(high).all()
 
 
+def picked(array: Array, place: int) -> float:
+    return float(array[place])
+
+
+def picking(lengths: Array, reach_ratio: float, weights: Array, params: Any, angles: Array) -> None:
+    angles[0], angles[1], angles[2] = picked(lengths, 3), picked(lengths, -1), picked(lengths, 0)
+
+
+@compiled_only
+def test_calls_with_other_constants_share_one_compiled_version() -> None:
+    assert bend(Strategy("picking", picking))[:3].tolist() == [3.0, 5.0, 0.0]
+    (versions,) = (d for function, d in compiler._COMPILED.values() if function is picked)
+    assert len(versions.overloads) == 1
+
+
 @compiled_only
 def test_kernel_that_does_not_compile_is_a_plugin_error_naming_its_plugin() -> None:
     strategy = Strategy("odd", odd)

@@ -8,6 +8,7 @@ from math import acos, atan2, cos, isfinite, nan, sin
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import base_rotation
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.memory import BEND
 from limbik.core.kernels.rotation import (
     ZERO_TURN,
     Vector,
@@ -53,7 +54,7 @@ def find_bend_vector(
     Returns:
         The vector; NaN where the strategy gave something that is not finite.
     """
-    previous = unit(rotate_back(base_rotation(body), vector(memory, 2)))
+    previous = unit(rotate_back(base_rotation(body), vector(memory, BEND)))
     known = has_direction(previous)
     if options.hold_bend and known:
         found = previous

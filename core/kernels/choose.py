@@ -12,9 +12,10 @@ from math import inf, pi
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.finish import end_solve
-from limbik.core.kernels.frames import clamp_angles, place_from, set_angles
-from limbik.core.kernels.layout import Body, Choice, Options, Plugs, Pose
+from limbik.core.kernels.frames import clamp_angles, distance_to, place_from, set_angles
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND, Body, Choice, Options, Plugs, Pose
 from limbik.core.kernels.limit import margin, put, taken
+from limbik.core.kernels.memory import angles_before
 from limbik.core.kernels.own import KEPT, LIMIT
 from limbik.core.kernels.rotation import (
     Vector,
@@ -27,7 +28,6 @@ from limbik.core.kernels.rotation import (
     multiply,
     near,
     nearest_form,
-    norm,
     rotate_back,
     rotation_vector,
     scale,
@@ -82,7 +82,7 @@ def end_and_choose(
         Whether the finish gave finite numbers only, and the stages traced.
     """
     best, share = inf, 0.5
-    said, nearest = 0.0, inf
+    in_vain, nearest = 0.0, inf
     candidates = choice.candidates + PULLS if choice.by != 0 else 0
     for number in range(-1, candidates):
         pulls = number >= choice.candidates
@@ -92,10 +92,10 @@ def end_and_choose(
             _start(number, goal, body, options, choice, memory, pose)
         if not end_solve(goal, body, options, plugs, pose):
             return False, stages
-        reached = _gap(goal, pose) < options.tolerance
+        reached = distance_to(goal, pose) < options.tolerance
         if number < 0:
             stages = record(stages, pose, trace)
-            said, nearest = pose.verdict[0], pose.verdict[1]
+            in_vain, nearest = pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND]
             if choice.by == 0 or not reached:
                 return True, stages
             _keep(FOUND, pose)
@@ -108,17 +108,11 @@ def end_and_choose(
             share *= 0.5
             if share < LEAST_PULL:
                 break
-    pose.verdict[0], pose.verdict[1] = said, nearest
+    pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND] = in_vain, nearest
     for joint in range(body.offsets.shape[0]):
         set_angles(joint, taken(pose.own[joint], BEST), pose)
     place_from(0, body, pose)
     return True, record(stages, pose, trace)
-
-
-@kernel
-def _gap(goal: Vector, pose: Pose) -> float:
-    """Return the distance of the end from the goal [length]."""
-    return norm(subtract(goal, vector(pose.positions, pose.positions.shape[0] - 1)))
 
 
 @kernel
@@ -143,9 +137,7 @@ def reference(joint: int, body: Body, choice: Choice, memory: Array) -> Vector:
     """Return a joint's angles in the reference pose: given, else the pose before, else at rest."""
     if choice.pose_given:
         return vector(choice.pose, joint)
-    if memory[3, 0] > 0.0:
-        return vector(memory, joint + 4)
-    return vector(body.rest, joint)
+    return angles_before(joint, body, memory)
 
 
 @kernel

@@ -4,7 +4,8 @@ from math import isfinite, isnan
 
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import place_from, renew_angles, set_angles
-from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND, Body, Options, Plugs, Pose
+from limbik.core.kernels.reach import least_reach
 from limbik.core.kernels.rotation import Vector, clamp, norm, store_vector, subtract, vector
 from limbik.core.slots import call_finish
 
@@ -19,7 +20,7 @@ def status_of(goal: Vector, distance: float, options: Options, pose: Pose) -> in
         return REACHED
     if not spans(goal, options.tolerance, pose):
         return OUT_OF_REACH
-    return BLOCKED if pose.verdict[0] == 1.0 else STOPPED
+    return BLOCKED if pose.verdict[IN_VAIN] == 1.0 else STOPPED
 
 
 @kernel
@@ -60,7 +61,7 @@ def end_solve(goal: Vector, body: Body, options: Options, plugs: Plugs, pose: Po
         pose.finish_rows,
         pose.verdict,
     )
-    total = 0.0
+    total = 0.0  # not finite if any angle is not
     for joint in range(n):
         for axis in range(3):
             total += pose.angles[joint, axis]
@@ -69,7 +70,8 @@ def end_solve(goal: Vector, body: Body, options: Options, plugs: Plugs, pose: Po
             )
         set_angles(joint, vector(pose.angles, joint), pose)
     place_from(0, body, pose)
-    return isfinite(total) and isfinite(pose.verdict[0]) and not isnan(pose.verdict[1])
+    told = isfinite(pose.verdict[IN_VAIN]) and not isnan(pose.verdict[LEAST_FOUND])
+    return isfinite(total) and told
 
 
 @kernel
@@ -105,5 +107,5 @@ def spans(goal: Vector, tolerance: float, pose: Pose) -> bool:
             longest = max(longest, bone)
         last = joint
     distance = norm(subtract(goal, vector(pose.positions, max(first, 0))))
-    inner = max(2.0 * longest - total, 0.0)
+    inner = least_reach(total, longest)
     return inner - tolerance < distance < total + tolerance

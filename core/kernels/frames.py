@@ -19,9 +19,11 @@ from limbik.core.kernels.rotation import (
     matrix_to_hpb,
     multiply,
     nearest_form,
+    norm,
     rotate,
     store_matrix,
     store_vector,
+    subtract,
     vector,
     wrap_angle,
 )
@@ -146,3 +148,9 @@ def add_offsets(joint: int, fk: Array, pose: Pose, options: Options) -> None:
             angle = wrap_angle(angle)
         pose.angles[joint, axis] = clamp(angle, pose.low[joint, axis], pose.high[joint, axis])
     set_angles(joint, vector(pose.angles, joint), pose)
+
+
+@kernel
+def distance_to(goal: Vector, pose: Pose) -> float:
+    """Return the distance of the end from a goal [length]."""
+    return norm(subtract(goal, vector(pose.positions, pose.positions.shape[0] - 1)))

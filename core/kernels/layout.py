@@ -9,6 +9,8 @@ from limbik.core.rotation import Array
 
 Vector = tuple[float, float, float]
 
+IN_VAIN, LEAST_FOUND = 0, 1  # places of `Pose.verdict`
+
 
 class Body(NamedTuple):
     """A chain of n joints."""
@@ -143,7 +145,7 @@ class Pose(NamedTuple):
     finish_rows: Array
     """What a finish works in, (n, 64)."""
     verdict: Array
-    """What a finish says, and the least distance to the goal it found [length], (2,)."""
+    """Whether a finish tried all in vain, and the least distance it found [length], (2,)."""
 
 
 class Bend(NamedTuple):

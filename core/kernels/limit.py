@@ -88,14 +88,6 @@ def slowed(
 
 
 @kernel
-def load_own(source: Array, own: Array) -> None:
-    """Give a working pose what is each joint's own."""
-    for joint in range(own.shape[0]):
-        for place in range(own.shape[1]):
-            own[joint, place] = source[joint, place]
-
-
-@kernel
 def limits_failed(angles: Array, own: Array) -> bool:
     """Return whether a joint with a limit of its own has angles that are no numbers."""
     failed = False

@@ -5,6 +5,7 @@ from math import hypot
 from limbik.core.jit import kernel
 from limbik.core.kernels.frames import base_rotation
 from limbik.core.kernels.layout import Body
+from limbik.core.kernels.memory import BEND, FLAGS, HAS_PLANE, LINE
 from limbik.core.kernels.planar_layout import FROM_POLE, FROM_REST, KEPT, Planar
 from limbik.core.kernels.rotation import (
     ZERO_LENGTH,
@@ -52,26 +53,26 @@ def find_plane(
     origin = base_origin(body)
     away = subtract(goal, origin)
     distance = norm(away)
-    known = memory[3, 1] > 0.0
+    known = memory[FLAGS, HAS_PLANE] > 0.0
     source = FROM_POLE
     line = unit(away)
     bend = (0.0, 0.0, 0.0)
     if distance > ON_BASE * body.along[body.along.shape[0] - 1]:
         bend = across(unit(subtract(pole, origin)), line)
     elif known:
-        line, source = vector(memory, 0), KEPT
+        line, source = vector(memory, LINE), KEPT
     else:
         line = (planar.rest_direction[0], planar.rest_direction[1], planar.rest_direction[2])
         bend, source = across(unit(subtract(pole, origin)), line), FROM_REST
     if has_direction(bend):
         bend = turned(bend, line, -planar.pole_turn)
     elif known:
-        bend, source = across(vector(memory, 2), line), KEPT
+        bend, source = across(vector(memory, BEND), line), KEPT
     if not has_direction(bend):
         bend, source = _rest_bend(line, planar), FROM_REST
-    store_vector(line, memory, 0)
-    store_vector(bend, memory, 2)
-    memory[3, 1] = 1.0
+    store_vector(line, memory, LINE)
+    store_vector(bend, memory, BEND)
+    memory[FLAGS, HAS_PLANE] = 1.0
     normal = cross(line, bend)
     frame = (
         (line[0], bend[0], normal[0]),

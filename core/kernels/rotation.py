@@ -51,6 +51,14 @@ def store_matrix(value: Matrix, array: Array, index: int) -> None:
 
 
 @kernel
+def copy_rows(source: Array, out: Array) -> None:
+    """Copy a matrix element by element; a slice assignment would allocate."""
+    for row in range(out.shape[0]):
+        for place in range(out.shape[1]):
+            out[row, place] = source[row, place]
+
+
+@kernel
 def wrap_angle(angle: float) -> float:
     """Return an angle [rad] wrapped into (-π, π]."""
     if -pi < angle <= pi:

@@ -6,8 +6,16 @@ import numpy as np
 
 from limbik.core.jit import entry, kernel
 from limbik.core.kernels.finish import BLOCKED, OUT_OF_REACH, REACHED, STOPPED
-from limbik.core.kernels.frames import base_rotation, new_pose, place_from, set_angles
+from limbik.core.kernels.frames import (
+    base_rotation,
+    distance_to,
+    new_pose,
+    place_from,
+    set_angles,
+)
 from limbik.core.kernels.layout import Body, Options, Plugs, Pose
+from limbik.core.kernels.memory import ANGLES as KEPT_ANGLES
+from limbik.core.kernels.memory import FLAGS, HAS_POSE, angles_before
 from limbik.core.kernels.planar_aim import (
     aim_end,
     any_offset,
@@ -19,16 +27,17 @@ from limbik.core.kernels.planar_bend import bend_planar, find_planar_joints
 from limbik.core.kernels.planar_ccd import find_bounds, planar_round
 from limbik.core.kernels.planar_layout import Planar, PlanarPose
 from limbik.core.kernels.plane import find_plane
+from limbik.core.kernels.reach import least_reach
 from limbik.core.kernels.rotation import (
     Matrix,
     Vector,
     add,
     column,
+    copy_rows,
     matrix,
     matrix_to_hpb,
     multiply,
     nearest_form,
-    norm,
     rotate_back,
     scale,
     store_vector,
@@ -43,7 +52,6 @@ from limbik.core.kernels.solve3d import (
     FAILED,
     ITERATIONS,
     STATUS,
-    copy_rows,
     write_pose,
 )
 from limbik.core.rotation import Array
@@ -235,7 +243,6 @@ def _read_angles(frame: Matrix, body: Body, memory: Array, pose: Pose, flat: Pla
 
     A planar joint turned by a in the IK plane turns its joint by a about the plane's normal.
     """
-    known = memory[3, 0] > 0.0
     parent = base_rotation(body)
     for joint in range(flat.after.shape[0]):
         turn = flat.after[joint] - flat.before[joint]
@@ -246,7 +253,7 @@ def _read_angles(frame: Matrix, body: Body, memory: Array, pose: Pose, flat: Pla
         relative = multiply(
             transposed(matrix(body.frozen, joint)), multiply(transposed(parent), world)
         )
-        reference = vector(memory, joint + 4) if known else vector(body.rest, joint)
+        reference = angles_before(joint, body, memory)
         angles = nearest_form(matrix_to_hpb(relative, reference[2]), reference)
         store_vector(angles, pose.angles, joint)
         parent = world
@@ -299,9 +306,9 @@ def _finish_pose(
             posed = nearest_form(posed, angles)
             angles = add(scale(angles, 1.0 - mix), scale(posed, mix))
         set_angles(joint, angles, pose)
-        store_vector(angles, memory, joint + 4)
+        store_vector(angles, memory, KEPT_ANGLES + joint)
     place_from(0, body, pose)
-    memory[3, 0] = 1.0
+    memory[FLAGS, HAS_POSE] = 1.0
 
 
 @kernel
@@ -320,7 +327,7 @@ def _write_numbers(
 ) -> None:
     """Write what a solve reports besides its pose into numbers (17 + n,)."""
     end = flat.after.shape[0] - 1
-    left = norm(subtract(goal, vector(pose.positions, end)))
+    left = distance_to(goal, pose)
     numbers[ITERATIONS] = iterations
     numbers[DISTANCE] = left
     numbers[STATUS] = failed
@@ -354,6 +361,6 @@ def _is_out_of_reach(distance: float, options: Options, flat: PlanarPose) -> boo
     for joint in range(flat.lengths.shape[0]):
         longest = max(longest, flat.lengths[joint])
     total = flat.along[flat.along.shape[0] - 1]
-    nearest = max(2.0 * longest - total, 0.0)
+    nearest = least_reach(total, longest)
     too_far = distance - total >= options.tolerance
     return bool(too_far or nearest - distance >= options.tolerance)

@@ -11,6 +11,7 @@ from limbik.core.kernels.finish import end_solve, status_of
 from limbik.core.kernels.frames import (
     base_rotation,
     clamp_angles,
+    distance_to,
     mark_limits,
     new_pose,
     place,
@@ -18,13 +19,17 @@ from limbik.core.kernels.frames import (
     renew_angles,
     set_angles,
 )
-from limbik.core.kernels.layout import Bend, Body, Options, Plugs, Pose
-from limbik.core.kernels.limit import limits_failed, load_own
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND, Bend, Body, Options, Plugs, Pose
+from limbik.core.kernels.limit import limits_failed
+from limbik.core.kernels.memory import AIM_BASE, AIM_ROOT, FLAGS, HAS_POSE, angles_before, has_pose
+from limbik.core.kernels.memory import ANGLES as KEPT_ANGLES
+from limbik.core.kernels.memory import BEND as KEPT_BEND
 from limbik.core.kernels.mix import mixed, wrap_free
 from limbik.core.kernels.rotation import (
     Vector,
     add,
     clamp,
+    copy_rows,
     has_direction,
     matrix,
     matrix_to_hpb,
@@ -92,7 +97,7 @@ def solve_goals(
         How many stages the trace holds.
     """
     pose = new_pose(body.offsets.shape[0])
-    load_own(plugs.own, pose.own)
+    copy_rows(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
@@ -104,20 +109,12 @@ def solve_goals(
         if led.onward and plugs.finish != 0:
             if not end_solve(led.pursued, body, options, plugs, pose):
                 failed = FAILED + 4
-            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            pose.verdict[LEAST_FOUND] += norm(subtract(goal, led.pursued))
             stages = record(stages, pose, trace)
         settle_pose(body, options, fk, memory, pose)
         write_numbers(goal, led, failed, options, pose, numbers[row])
         write_pose(pose, angles[row], positions[row], rotations[row])
     return stages
-
-
-@kernel
-def copy_rows(source: Array, out: Array) -> None:
-    """Copy a matrix element by element; a slice assignment would allocate."""
-    for row in range(out.shape[0]):
-        for place_in_row in range(out.shape[1]):
-            out[row, place_in_row] = source[row, place_in_row]
 
 
 @kernel
@@ -143,7 +140,7 @@ class Led(NamedTuple):
     stages: int
     """Traced so far."""
     onward: bool
-    """Whether stages may follow that go on from CCD."""
+    """Whether a finish may follow: no strategy failed, and CCD was asked for."""
 
 
 @kernel
@@ -157,9 +154,20 @@ def lead(
     pose: Pose,
     trace: Array,
 ) -> Led:
-    """Take one goal through all stages up to the last round of CCD."""
+    """Take one goal through all stages up to the last round of CCD.
+
+    Args:
+        goal: World [length].
+        body: The chain.
+        options: Of the solve.
+        plugs: Of the solve.
+        fk: FK offsets, HPB, (n, 3) [rad].
+        memory: Continuity, (n + 4, 3); keeps the aim pose and the bend vector.
+        pose: OUT: how CCD leaves it.
+        trace: OUT: the stages, as far as it has room.
+    """
     bend_world, pursued = (0.0, 0.0, 0.0), goal
-    pose.verdict[0], pose.verdict[1] = 0.0, inf
+    pose.verdict[IN_VAIN], pose.verdict[LEAST_FOUND] = 0.0, inf
     iterations, failed, stages = -2, 0, 0
     if not _initial_pose(body, options, plugs, memory, pose):
         failed = FAILED + 2
@@ -173,7 +181,7 @@ def lead(
             failed = FAILED + 1
         else:
             bend_world = rotate(base_rotation(body), found)
-            store_vector(bend_world, memory, 2)
+            store_vector(bend_world, memory, KEPT_BEND)
             bend = Bend(aim, usable(found, aim, body, options, pose))
             if options.max_iterations == -1:
                 _twist_aim(bend, body, options, fk, pose)
@@ -195,16 +203,14 @@ def lead(
 @kernel
 def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pose: Pose) -> bool:
     """Set limits and angles of the initial pose; False where root control gave no number."""
-    n, known = body.offsets.shape[0], memory[3, 0] > 0.0
+    n, known = body.offsets.shape[0], has_pose(memory)
     copy_rows(body.low, pose.low)
     copy_rows(body.high, pose.high)
     copy_rows(body.rest, pose.angles)
     if plugs.root_control != 0:
         last = pose.directions
         for joint in range(n):
-            store_vector(
-                vector(memory, joint + 4) if known else vector(body.rest, joint), last, joint
-            )
+            store_vector(angles_before(joint, body, memory), last, joint)
         call_root_control(
             plugs.root_control,
             options.root,
@@ -218,8 +224,8 @@ def _initial_pose(body: Body, options: Options, plugs: Plugs, memory: Array, pos
             return False
     mark_limits(pose)
     if options.from_previous and options.max_iterations > -2 and known:
-        store_vector(vector(memory, 0), pose.angles, 0)
-        store_vector(vector(memory, 1), pose.angles, options.root)
+        store_vector(vector(memory, AIM_BASE), pose.angles, 0)
+        store_vector(vector(memory, AIM_ROOT), pose.angles, options.root)
     for joint in range(n):
         set_angles(joint, clamp_angles(joint, vector(pose.angles, joint), pose), pose)
         pose.violations[joint] = 0
@@ -270,8 +276,8 @@ def _aim_pose(
     place_from(root, body, pose)
     renew_angles(0, pose)
     renew_angles(root, pose)
-    store_vector(vector(pose.angles, 0), memory, 0)
-    store_vector(vector(pose.angles, root), memory, 1)
+    store_vector(vector(pose.angles, 0), memory, AIM_BASE)
+    store_vector(vector(pose.angles, root), memory, AIM_ROOT)
     if options.off_axis:
         end = vector(pose.positions, n - 1)
         for joint in range(n - 1):
@@ -308,10 +314,10 @@ def _continue_pose(body: Body, memory: Array, pose: Pose) -> None:
 
     It is pulled into this solve's limits, which a root control may have changed.
     """
-    if not memory[3, 0] > 0.0:
+    if not has_pose(memory):
         return
     for joint in range(body.offsets.shape[0]):
-        set_angles(joint, clamp_angles(joint, vector(memory, joint + 4), pose), pose)
+        set_angles(joint, clamp_angles(joint, vector(memory, KEPT_ANGLES + joint), pose), pose)
     place_from(0, body, pose)
 
 
@@ -348,29 +354,22 @@ def _rounds(
 
 
 @kernel
-def distance_to(goal: Vector, pose: Pose) -> float:
-    """Return the distance of the end from a goal [length]."""
-    return norm(subtract(goal, vector(pose.positions, pose.positions.shape[0] - 1)))
-
-
-@kernel
 def settle_pose(body: Body, options: Options, fk: Array, memory: Array, pose: Pose) -> None:
     """Choose the angles' forms, mix in FK, renew the frames from the angles, keep the pose."""
-    known = memory[3, 0] > 0.0
     mix = 1.0 if options.full_fk else options.fk_mix
     for joint in range(body.offsets.shape[0]):
         angles = vector(pose.angles, joint)
         if pose.free[joint]:
-            reference = vector(memory, joint + 4) if known else vector(body.rest, joint)
+            reference = angles_before(joint, body, memory)
             found = matrix_to_hpb(matrix(pose.relative, joint), reference[2])
             angles = nearest_form(found, reference)
         if mix > 0.0:
             angles = mixed(joint, angles, mix, body, fk, pose)
         angles = wrap_free(angles, vector(body.high, joint))
         set_angles(joint, angles, pose)
-        store_vector(vector(pose.angles, joint), memory, joint + 4)
+        store_vector(vector(pose.angles, joint), memory, KEPT_ANGLES + joint)
     place_from(0, body, pose)
-    memory[3, 0] = 1.0
+    memory[FLAGS, HAS_POSE] = 1.0
 
 
 @kernel
@@ -390,4 +389,4 @@ def write_numbers(
     numbers[BEND], numbers[BEND + 1], numbers[BEND + 2] = led.bend
     local = rotate_back(matrix(pose.world, options.root), led.bend)
     numbers[BEND_ANGLE] = atan2(local[0], local[1])
-    numbers[NEAREST] = min(distance, pose.verdict[1])
+    numbers[NEAREST] = min(distance, pose.verdict[LEAST_FOUND])

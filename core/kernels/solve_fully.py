@@ -8,13 +8,11 @@ from math import isnan
 from limbik.core.jit import entry
 from limbik.core.kernels.choose import end_and_choose
 from limbik.core.kernels.frames import new_pose
-from limbik.core.kernels.layout import Body, Choice, Options, Plugs
-from limbik.core.kernels.limit import load_own
+from limbik.core.kernels.layout import LEAST_FOUND, Body, Choice, Options, Plugs
 from limbik.core.kernels.orient import orient_end
-from limbik.core.kernels.rotation import norm, subtract, vector
+from limbik.core.kernels.rotation import copy_rows, norm, subtract, vector
 from limbik.core.kernels.solve3d import (
     FAILED,
-    copy_rows,
     lead,
     settle_pose,
     write_numbers,
@@ -45,7 +43,7 @@ def solve_fully(
     then how they are turned, HPB [rad], or NaN.
     """
     pose = new_pose(body.offsets.shape[0])
-    load_own(plugs.own, pose.own)
+    copy_rows(plugs.own, pose.own)
     kept = memory.copy()
     stages = 0
     for row in range(goals.shape[0]):
@@ -60,7 +58,7 @@ def solve_fully(
             )
             if not ended:
                 failed = FAILED + 4
-            pose.verdict[1] += norm(subtract(goal, led.pursued))
+            pose.verdict[LEAST_FOUND] += norm(subtract(goal, led.pursued))
         if led.onward and choice.end_orientation > 0.0 and goals.shape[1] > 3:
             turn = (goals[row, 3], goals[row, 4], goals[row, 5])
             if not isnan(turn[0]):

@@ -20,6 +20,10 @@ from limbik.plugins.finish.linkage import (
 from limbik.plugins.finish.steps import find_step, take_step
 
 LONGEST_STEP = 0.7  # [rad]; a longer step leaves the range where the first order says something
+NO_STEP = 1e-15  # [rad]; a shorter step changes no angle
+# Damping of `find_step`: less after each step that led nearer, more after one that did not.
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e6
+RELAX, TIGHTEN = 0.1, 8.0
 
 
 @kernel
@@ -49,13 +53,13 @@ def descend(
         write((0.0, 0.0, 0.0), scratch, joint, WAY)
     error = subtract(goal, end_at(ANGLES, chain, scratch))
     distance = norm(error)
-    damping = 1e-3
+    damping = FIRST_DAMPING
     for _ in range(steps):
         if distance <= tolerance:
             break
         find_motions(subtract(goal, error), chain, scratch)
         find_step(error, damping, chain, scratch)
-        if not take_step(LONGEST_STEP, chain, scratch) > 1e-15:
+        if not take_step(LONGEST_STEP, chain, scratch) > NO_STEP:
             break
         tried = subtract(goal, end_at(TRIAL, chain, scratch))
         left = norm(tried)
@@ -63,12 +67,12 @@ def descend(
             small = distance - left < least_gain * min(distance, 0.1 * chain.length)
             copy_columns(TRIAL, ANGLES, scratch)
             error, distance = tried, left
-            damping = max(damping * 0.1, 1e-12)
+            damping = max(damping * RELAX, LEAST_DAMPING)
             if small:
                 break
         else:
-            if damping > 1e6:
+            if damping > MOST_DAMPING:
                 break
-            damping *= 8.0
+            damping *= TIGHTEN
             end_at(ANGLES, chain, scratch)
     return distance

@@ -11,6 +11,7 @@ from limbik.core.jit import kernel
 from limbik.core.kernels.limit import PULL, do_task
 from limbik.core.kernels.own import ANGLES as ANGLES_OF_OWN
 from limbik.core.kernels.own import LIMIT, OTHER, STEP, TASK_WIDTH
+from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
     add,
@@ -27,7 +28,9 @@ from limbik.core.kernels.rotation import (
 )
 from limbik.core.rotation import Array
 
-# First columns of the scratch rows, three numbers each.
+# First columns of the scratch rows, three numbers each (AXES: three vectors). ANGLES is the pose
+# that is worked on, TRIAL a step and then where it leads, BEST the answer so far, HOME the pose of
+# CCD; WAY is how the angles are to go if the end lets them, ACTIVE 1 for axes that may turn.
 ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
 POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
 OWN = 30  # what a joint's own limit works in, see `limbik.core.kernels.own`
@@ -41,23 +44,23 @@ class Linkage(NamedTuple):
     length: float
     """Sum of the bones [length]"""
     offsets: Array
-    """(n, 3) [length]"""
+    """Joint positions in the parent's frame, (n, 3) [length]"""
     frozen: Array
-    """(n, 3, 3)"""
+    """Frozen rotations, (n, 3, 3)"""
     base_position: Array
-    """(3,) [length]"""
+    """World, (3,) [length]"""
     base_rotation: Array
-    """(3, 3)"""
+    """Axes of the IK space in the world, (3, 3)"""
     low: Array
-    """(n, 3) [rad]"""
+    """Limits, (n, 3) [rad]; -inf where free, those of held joints equal"""
     high: Array
-    """(n, 3) [rad]"""
+    """Limits, (n, 3) [rad]; inf where free"""
 
 
 @kernel
 def turns(joint: int, axis: int, chain: Linkage) -> bool:
     """Return whether an axis has a range to turn in."""
-    return bool(chain.high[joint, axis] - chain.low[joint, axis] > 1e-9)
+    return bool(chain.high[joint, axis] - chain.low[joint, axis] > FIXED)
 
 
 @kernel

@@ -23,6 +23,7 @@ from pydantic import Field
 
 from limbik.core.hooks import hookimpl
 from limbik.core.jit import kernel
+from limbik.core.kernels.layout import IN_VAIN, LEAST_FOUND
 from limbik.core.kernels.rotation import Vector
 from limbik.core.strategy import Strategy
 from limbik.plugins.finish.descent import descend
@@ -91,7 +92,10 @@ def newton(
     scratch: Array,
     verdict: Array,
 ) -> None:
-    """End a solve at its goal within the limits, or as near as there is a way to."""
+    """End a solve at its goal within the limits, or as near as there is a way to.
+
+    The arguments are those of the slot `finish`, see `limbik.core.slots`.
+    """
     chain = Linkage(length, offsets, frozen, base_position, base_rotation, low, high)
     load_own(own, scratch)
     point = (goal[0], goal[1], goal[2])
@@ -110,8 +114,8 @@ def newton(
             retries = 0 if straight else min(retries, OUT_RETRIES)
         nearest = _search(point, aimed, tolerance, nearest, retries, params, chain, scratch)
     tried = params.retries > 0 or not reachable
-    verdict[0] = 1.0 if nearest >= tolerance and tried else 0.0
-    verdict[1] = nearest
+    verdict[IN_VAIN] = 1.0 if nearest >= tolerance and tried else 0.0
+    verdict[LEAST_FOUND] = nearest
     for joint in range(angles.shape[0]):
         for axis in range(3):
             angles[joint, axis] = scratch[joint, BEST + axis]
@@ -136,7 +140,13 @@ def _buckle(
     chain: Linkage,
     scratch: Array,
 ) -> float:
-    """Leave a pose from which no axis alone leads nearer; return the distance of what is BEST."""
+    """Push the pose off where it stands, descend again, and take what is nearer into BEST.
+
+    So a pose is left from which no axis alone leads nearer.
+
+    Returns:
+        The distance of the end of BEST from the goal [length].
+    """
     off_home(chain, scratch)
     distance = descend(goal, aimed, steps, THOROUGH, chain, scratch)
     if distance < tolerance or distance < nearest - NEARER * chain.length:

@@ -47,6 +47,7 @@ def find_step(error: Vector, damping: float, chain: Linkage, scratch: Array) -> 
     for joint in range(chain.offsets.shape[0]):
         for axis in range(3):
             scratch[joint, ACTIVE + axis] = 1.0 if turns(joint, axis, chain) else 0.0
+    # Each pass takes an axis or a direction out, so there are no more passes than axes.
     for _ in range(3 * chain.offsets.shape[0]):
         weights = _weights(error, damping, chain, scratch)
         blocked = _write_step(weights, chain, scratch)
@@ -131,7 +132,7 @@ def _solve(
 
 @kernel
 def _bar_ways_out(chain: Linkage, scratch: Array) -> bool:
-    """Take the way out of their own limits from joints that the step would push there."""
+    """Let joints that the step would push out of their own limits slide; return whether any."""
     found = False
     for joint in range(chain.offsets.shape[0]):
         if has_limit(joint, scratch) and scratch[joint, ACTIVE] != 0.0:

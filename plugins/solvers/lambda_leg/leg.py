@@ -1,7 +1,7 @@
 """`LambdaLeg`: the right leg of source 002 in its own world, right-handed with Z up."""
 
 from dataclasses import dataclass, field
-from math import atan2, inf
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -208,8 +208,3 @@ def level_pose(ankle: ArrayLike, rtp: ArrayLike, pitch: float, roll: float) -> t
     torso = turn_y(pitch) @ turn_x(roll)
     yaw, t, p = np.asarray(rtp, np.float64).tolist()
     return torso.T @ np.asarray(ankle, np.float64), torso.T @ rotation(yaw, t, p)
-
-
-def heading_of(matrix: Array) -> float:
-    """Return the yaw r of a foot rotation in the level frame [rad]."""
-    return atan2(-matrix[0, 1], matrix[1, 1])
