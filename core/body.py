@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 from limbik.core.bodyorder import order_faults
 from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import Fault, InputError
+from limbik.core.goalturn import carried
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
+from limbik.core.rotation import Array
 from limbik.core.skeleton import WORLD, Limb, Skeleton
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solveinput import checked
@@ -228,7 +229,7 @@ class BodySolver:
             origin, axes = found.positions[chain.frame], found.rotations[chain.frame]
             goal = origin + axes @ goal
             if turned is not None:
-                turned = matrix_to_hpb(axes @ hpb_to_matrix(turned))
+                turned = carried(axes, turned)
             if isinstance(solver, Solver2D):
                 solver = solver.with_pole(origin + axes @ np.array(solver.pole.position))
         if turned is not None:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from limbik.core.kernels import rotation as kernels
 from limbik.core.rotation import Array, matrix_to_hpb
 
 UNIT = 1e-3  # largest error of a quaternion's length that is taken for rounding of the input
@@ -27,6 +28,22 @@ def quaternion_to_hpb(quaternions: ArrayLike) -> Array:
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
     ]
     return matrix_to_hpb(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
+
+
+def carried(axes: Array, turn: Array) -> Array:
+    """Return a turn that is given in axes, as one in what the axes are given in.
+
+    One turn, in plain numbers: numpy takes several times as long, and a body asks in every frame.
+
+    Args:
+        axes: As columns, (3, 3).
+        turn: HPB, (3,) [rad]; NaNs stay.
+    """
+    if np.isnan(turn[0]):
+        return turn
+    rows = axes.tolist()
+    own = kernels.hpb_to_matrix(turn.tolist())
+    return np.array(kernels.matrix_to_hpb(kernels.multiply(rows, own), 0.0))
 
 
 def length_fault(length: float) -> str:

@@ -73,7 +73,7 @@ def rest_line(chain: Chain) -> Array:
 
 
 def turn_pole(
-    chain: Chain, pole: Pole, rotor: PoleRotor, goals: Array, turns: Array | None
+    chain: Chain, line: Array, pole: Pole, rotor: PoleRotor, goals: Array, turns: Array | None
 ) -> tuple[Array, Array, Array | None]:
     """Turn a pole by its rotor for goals.
 
@@ -82,6 +82,7 @@ def turn_pole(
 
     Args:
         chain: The chain.
+        line: Its `rest_line`.
         pole: The pole.
         rotor: Its rotor.
         goals: World positions, (m, 3) [length].
@@ -101,7 +102,7 @@ def turn_pole(
         rotor.tilt,
         rotor.orient_goal,
         rotor.sync_z,
-        np.array([places[0], pole.position, rest_line(chain)]),
+        np.array([places[0], pole.position, line]),
         np.array([chain.base_rotation, axes[-1]]),
     )
     poles, frames = np.empty(goals.shape), np.empty((2, len(goals), 3, 3))

@@ -160,10 +160,10 @@ class Skeleton:
             positions: World positions of the skeleton's joints, (..., n, 3) [length].
             rotations: World rotations, (..., n, 3, 3).
         """
-        parent = self.parents[limb.at[0]]
-        still = np.broadcast_to(np.eye(3), (*rotations.shape[:-3], 3, 3))
-        turn = still if parent < 0 else rotations[..., parent, :, :]
-        return positions[..., limb.at[0], :], turn
+        place, parent = positions[..., limb.at[0], :], self.parents[limb.at[0]]
+        if parent < 0:
+            return place, np.broadcast_to(np.eye(3), (*rotations.shape[:-3], 3, 3))
+        return place, rotations[..., parent, :, :]
 
 
 @dataclass(frozen=True, eq=False)

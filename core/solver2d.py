@@ -246,7 +246,8 @@ class Solver2D(Solver):
         rows[:, :3], rows[:, 3:] = goals, self.pole.position
         frames = axes = None
         if rotor is not None:
-            rows[:, 3:], frames, axes = turn_pole(self.chain, self.pole, rotor, goals, turns)
+            line = self._planar.rest_direction
+            rows[:, 3:], frames, axes = turn_pole(self.chain, line, self.pole, rotor, goals, turns)
         elif turns is not None:
             axes = hpb_to_matrix(turns)
         if poles is not None:

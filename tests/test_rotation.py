@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from limbik.core.goalturn import carried
 from limbik.core.kernels import re_aim
 from limbik.core.kernels import rotation as kernels
 from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb, nearest_form, other_form, wrap
@@ -102,6 +103,16 @@ def test_kernels_compute_what_the_numpy_face_does(
     np.testing.assert_allclose(
         hpb_to_matrix(plain(kernels.other_form)(hpb)), hpb_to_matrix(hpb), atol=1e-13
     )
+
+
+@given(HPB, HPB)
+def test_a_turn_given_in_axes_is_carried_by_them(
+    axes: tuple[float, float, float], turn: tuple[float, float, float]
+) -> None:
+    frame = hpb_to_matrix(axes)
+    found = carried(frame, np.array(turn))
+    np.testing.assert_allclose(hpb_to_matrix(found), frame @ hpb_to_matrix(turn), atol=1e-8)
+    assert np.isnan(carried(frame, np.full(3, np.nan))).all()
 
 
 @pytest.mark.parametrize("pitch", [pi / 2, -pi / 2])

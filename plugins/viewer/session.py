@@ -14,9 +14,10 @@ import numpy as np
 from limbik.core.body import BodyChain, BodySolution, BodySolver
 from limbik.core.bodyscene import BodyScene
 from limbik.core.errors import LimbikError
+from limbik.core.goalturn import carried
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
-from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
+from limbik.core.rotation import Array
 from limbik.core.scene import Scene
 from limbik.core.skeleton import WORLD
 from limbik.core.slots import SOLVER
@@ -97,7 +98,7 @@ class Chained:
         turn = self.turn(frame)
         if turn is None or setup.in_plane:
             return turn
-        return matrix_to_hpb(self.axes @ hpb_to_matrix(turn))
+        return carried(self.axes, turn)
 
 
 class Session:
@@ -188,7 +189,7 @@ class Session:
         """Turn a chain's goal, HPB, (3,) [rad], world."""
         one, given = self.chains[name], checked(turn, (3,), "goal's rotation")
         if not one.setup.in_plane:
-            given = matrix_to_hpb(one.axes.T @ hpb_to_matrix(given))
+            given = carried(one.axes.T, given)
         one.turns, self._solver = given.reshape(1, 3), None
 
     def change(self, name: str, setup: Setup) -> None:
