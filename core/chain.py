@@ -1,6 +1,6 @@
 """`Joint` and `Chain`: what a user builds; checked once, then frozen arrays (000 §4, §7.4)."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -250,30 +250,38 @@ class Chain:
 
 def _radians(degrees: Any) -> Any:
     """Return angles in radians; what is none stays as it is, for the chain to refuse."""
-    return tuple(map(radians, degrees)) if _are_finite(degrees) else degrees
+    fits = _are_numbers(degrees) and all(
+        not isinstance(v, int) or abs(v) < LARGEST for v in degrees
+    )
+    return tuple(map(radians, degrees)) if fits else degrees
 
 
-def _are_finite(values: Any) -> bool:
-    """Whether values are a list of real numbers whose squares are numbers too."""
+def _are_numbers(values: Any) -> bool:
     if isinstance(values, np.ndarray) and values.ndim != 1:
         return False
+    kinds = int | float | np.integer | np.floating
     return isinstance(values, Sequence | np.ndarray) and all(
-        isinstance(value, int | float | np.integer | np.floating) and abs(value) < LARGEST
-        for value in values
+        isinstance(value, kinds) for value in values
     )
 
 
+def _are_small(values: Any) -> bool:
+    """Whether values are numbers, finite, and their squares too."""
+    return _are_numbers(values) and all(abs(value) < LARGEST for value in values)
+
+
 def _as_joints(joints: Any) -> tuple[Joint, ...]:
-    if not isinstance(joints, Iterable):
-        raise ChainError(f"joints: expected a list of Joint, found {joints!r:.60}")
-    found = tuple(joints)
+    try:
+        found = tuple(joints)
+    except TypeError:
+        raise ChainError(f"joints: expected a list of Joint, found {joints!r:.60}") from None
     for joint in found:
         if not isinstance(joint, Joint):
             raise ChainError(f"joints: expected a list of Joint, found {joint!r:.60} in it")
-        if not isinstance(joint.name, str) or not joint.name:
-            raise ChainError(
-                f"every joint needs a name, a text that is not empty: {joint.name!r:.60}"
-            )
+        if not joint.name and isinstance(joint.name, str):
+            raise ChainError("every joint needs a name")
+        if not isinstance(joint.name, str):
+            raise ChainError(f"every joint needs a name, which is a text, not {joint.name!r:.60}")
     return found
 
 
@@ -288,10 +296,9 @@ def _check_count(joints: tuple[Joint, ...]) -> None:
 
 
 def _check_vector(vector: Vector, what: str, joint: str | None = None) -> None:
-    if not _are_finite(vector) or len(vector) != 3:
+    if not _are_small(vector) or len(vector) != 3:
         shown = list(vector) if isinstance(vector, tuple) else vector
-        message = f"{what} must be three finite numbers below {LARGEST:g} in size"
-        raise ChainError(f"{message} (found {shown!r:.80})", joint)
+        raise ChainError(f"{what} must be three finite numbers (found {shown!r:.200})", joint)
 
 
 def _check_joint(joint: Joint) -> None:
@@ -310,8 +317,13 @@ def _check_own_limit(joint: Joint) -> None:
 
 
 def _check_limit(name: str, axis: str, limit: Limit) -> None:
-    if not _are_finite(limit) or len(limit) != 2:
+    if not _are_numbers(limit) or len(limit) != 2:
         raise ChainError(f"{axis} range must be two finite numbers (found {limit!r:.80})", name)
+    if not _are_small(limit):
+        found = ", ".join(
+            f"{v * 180 / pi:g}" if isinstance(v, float) else f"{v!r:.20}" for v in limit
+        )
+        raise ChainError(f"{axis} range must be two finite numbers (found [{found}])", name)
     low, high = limit
     shown = f"[{np.degrees(low):g}, {np.degrees(high):g}]"
     if low > high:

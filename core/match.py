@@ -128,7 +128,7 @@ def convert_bend_vector(
 
 
 def _check_mode(mode: object) -> None:
-    if mode not in get_args(Mode):
+    if not isinstance(mode, str) or mode not in get_args(Mode):
         raise InputError(f"mode: must be {' or '.join(get_args(Mode))}, not {found_words(mode)}")
 
 

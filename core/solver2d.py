@@ -66,8 +66,9 @@ class Solver2D(Solver):
         pole: Pole | Sequence[float] | Array,
         **options: Any,
     ) -> None:
+        place = checked(pole.position if isinstance(pole, Pole) else pole, (3,), "pole")
         if not isinstance(pole, Pole):
-            x, y, z = checked(pole, (3,), "pole").tolist()
+            x, y, z = place.tolist()
             pole = Pole(position=(x, y, z))
         self.pole = pole
         super().__init__(chain, settings, registry, **options)

@@ -56,14 +56,13 @@ TAKERS: dict[str, Callable[[Any], Any]] = {
     "goal_turn": lambda bad: SOLVER.solve(GOAL, goal_turn=bad),
     "continuity": lambda bad: SOLVER.solve(GOAL, continuity=bad),
     "memory": lambda bad: SOLVER.solve(GOAL, continuity=Continuity(bad)),
-    "threads": lambda bad: SOLVER.solve_many([GOAL], threads=bad),
     "chain": Solver,
     "settings": lambda bad: Solver(ARM, bad),
     "pose chain": PoseSolver,
     "tolerance": lambda bad: PoseSolver(ARM, tolerance=bad),
     "starts": lambda bad: PoseSolver(ARM, starts=bad),
     "pole": lambda bad: Solver2D(ARM, pole=bad),
-    "Pole": lambda bad: Pole(position=bad),
+    "Pole": lambda bad: Solver2D(ARM, pole=Pole(position=bad)),
     "rotor": lambda bad: PoleRotor(swing=bad),
     "joints": Chain,
     "joint": lambda bad: Chain([bad, bad]),
@@ -94,12 +93,18 @@ def test_what_does_not_fit_is_refused_in_words(taker: str, bad: str) -> None:
     assert len(str(caught.value)) > 10
 
 
-@pytest.mark.parametrize("bad", BAD)
+@pytest.mark.parametrize("bad", [name for name in BAD if name != "a scalar"])
 @pytest.mark.parametrize("option", Settings.model_fields)
 def test_options_are_refused_in_the_words_of_scenes(option: str, bad: str) -> None:
     with pytest.raises(LimbikError) as caught:
         Solver(ARM, Settings(**{option: BAD[bad]}))
     assert "pydantic" not in str(caught.value)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, "2"])
+def test_threads_are_counted(threads: Any) -> None:
+    with pytest.raises(LimbikError, match="threads"):
+        SOLVER.solve_many([GOAL], threads=threads)
 
 
 @pytest.mark.parametrize("name", [None, 5, "", b"hip", ["hip"]])

@@ -205,7 +205,7 @@ class PoseSolver(PoseBatch):
 def _check(solver: PoseSolver) -> None:
     """Refuse what cannot be solved with; scenes are checked before."""
     numbers, counts = (int, float, np.integer, np.floating), (int, np.integer)
-    least = np.nextafter(0.0, 1.0)
+    least = 5e-324  # the smallest number above 0
     for name, kinds, low, high, right in (
         ("tolerance", numbers, least, LARGEST, "a number above 0"),
         ("angle", numbers, least, np.pi, "a number above 0, at most π"),
