@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from limbik.core.pole import Pole as Pole
     from limbik.core.pole import PoleRotor as PoleRotor
     from limbik.core.registry import Registry as Registry
+    from limbik.core.scene import read_scene as read_scene
     from limbik.core.settings import Settings as Settings
     from limbik.core.skeleton import JointSkeleton as JointSkeleton
     from limbik.core.solution import Continuity as Continuity
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from limbik.core.solution import Status as Status
     from limbik.core.solver import Solver as Solver
     from limbik.core.solver2d import Solver2D as Solver2D
+    from limbik.core.solving import solve_scene as solve_scene
     from limbik.core.strategy import Strategy as Strategy
     from limbik.plugins.solvers.refine.solver import PoseSolver as PoseSolver
 
@@ -58,7 +60,10 @@ _PUBLIC = {
     "match_fk": "limbik.core.match",
     "match_ik": "limbik.core.match",
     "read_body": "limbik.core.bodyscene",
+    "read_scene": "limbik.core.scene",
+    "solve_scene": "limbik.core.solving",
 }
+__all__ = list(_PUBLIC)
 
 
 def __getattr__(name: str) -> Any:

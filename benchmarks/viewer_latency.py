@@ -44,6 +44,8 @@ def main(scene: str = str(SCENE), chain: str = "") -> None:
     versions = [Subprotocol(f"viser-v{viser.__version__}")]
     with connect(viewer.url.replace("http", "ws"), subprotocols=versions, max_size=None) as line:
         times = []
+        grabbed = wire.TransformControlsDragStartMessage(f"/{name}-goal")
+        line.send(msgspec.msgpack.encode(grabbed.as_serializable_dict()))
         for step in range(DRAGS + FIRST):
             way = np.array([np.sin(step / 17), np.cos(step / 11), np.sin(step / 23)])
             x, y, z = to_page(start + size * way).tolist()

@@ -70,21 +70,8 @@ class Joint:
         limit: str | Mapping[str, Any] | None = None,
     ) -> "Joint":
         """Build a joint from angles in degrees; the arguments are those of the class."""
-
-        def ends(span: Limit | None) -> Limit | None:
-            return None if span is None else (radians(span[0]), radians(span[1]))
-
-        return cls(
-            name,
-            offset,
-            (radians(frozen[0]), radians(frozen[1]), radians(frozen[2])),
-            (radians(rest[0]), radians(rest[1]), radians(rest[2])),
-            ends(heading),
-            ends(pitch),
-            ends(bank),
-            ends(planar),
-            limit=limit,
-        )
+        given = (frozen, rest, heading, pitch, bank, planar)
+        return cls(name, offset, *map(_radians, given), limit=limit)
 
     @property
     def limits(self) -> tuple[Limit | None, Limit | None, Limit | None]:
@@ -253,6 +240,17 @@ class Chain:
         return Chain(joints, (-x, y, z), turn(self.base_turn))
 
 
+def _radians(degrees: Any) -> Any:
+    """Return angles in radians; what is none stays as it is, for the chain to refuse."""
+    return tuple(map(radians, degrees)) if _are_numbers(degrees) else degrees
+
+
+def _are_numbers(values: Any) -> bool:
+    return isinstance(values, Sequence | np.ndarray) and all(
+        isinstance(value, int | float | np.number) for value in values
+    )
+
+
 def _check_count(joints: tuple[Joint, ...]) -> None:
     if not 2 <= len(joints) <= MAX_JOINTS:
         raise ChainError(f"a chain has 2 to {MAX_JOINTS} joints, this one has {len(joints)}")
@@ -264,8 +262,9 @@ def _check_count(joints: tuple[Joint, ...]) -> None:
 
 
 def _check_vector(vector: Vector, what: str, joint: str | None = None) -> None:
-    if len(vector) != 3 or not all(isfinite(value) for value in vector):
-        raise ChainError(f"{what} must be three finite numbers (found {list(vector)})", joint)
+    if not _are_numbers(vector) or len(vector) != 3 or not all(map(isfinite, vector)):
+        shown = list(vector) if isinstance(vector, tuple) else vector
+        raise ChainError(f"{what} must be three finite numbers (found {shown})", joint)
 
 
 def _check_joint(joint: Joint) -> None:
@@ -286,6 +285,8 @@ def _check_own_limit(joint: Joint) -> None:
 
 
 def _check_limit(name: str, axis: str, limit: Limit) -> None:
+    if not _are_numbers(limit) or len(limit) != 2:
+        raise ChainError(f"{axis} range must be two finite numbers (found {limit!r})", name)
     low, high = limit
     shown = f"[{np.degrees(low):g}, {np.degrees(high):g}]"
     if not (isfinite(low) and isfinite(high)):

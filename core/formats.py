@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from limbik.core.chain import Chain
 from limbik.core.frames import mirror_hpb
@@ -104,7 +105,7 @@ class Values:
 
     names: tuple[str, ...]
     unit: str
-    rows: Array
+    rows: Array | NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,7 @@ class Bake:
         frame_time: Seconds from goal to goal.
         mirrored: Whether left and right are exchanged.
         metrics: What the motion is like, see `limbik.core.motion`.
+        servos: What servos are told, where that is asked for.
     """
 
     scene: "Scene"
@@ -183,6 +185,7 @@ class Bake:
     frame_time: float
     mirrored: bool = False
     metrics: dict[str, Any] = field(default_factory=dict)
+    servos: Values | None = None
 
     @property
     def body(self) -> Body:
@@ -231,6 +234,7 @@ class Output:
         write: Gives the content of the whole file. Raises InputError if the motion does not fit.
         description: One sentence.
         write_body: The same for scenes of several chains; None if such files hold one chain.
+        servos: Whether its files hold what servos are told.
     """
 
     name: str
@@ -238,6 +242,7 @@ class Output:
     write: Callable[[Bake], str | bytes]
     description: str = ""
     write_body: Callable[[BodyBake], str | bytes] | None = None
+    servos: bool = False
 
 
 FORMAT_HOOKS: dict[str, tuple[str, type]] = {

@@ -98,7 +98,8 @@ def checked_memory(values: Array, joints: int) -> Array:
 
 
 def _shown(shape: tuple[int | None, ...]) -> str:
-    return "(" + ", ".join("m" if size is None else str(size) for size in shape) + ",)"
+    sizes = ["m" if size is None else str(size) for size in shape]
+    return f"({', '.join(sizes)}{',' * (len(sizes) == 1)})"
 
 
 def check_joints(chain: Chain, settings: Settings, first: int) -> None:

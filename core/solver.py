@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import PluginError
+from limbik.core.errors import InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
 from limbik.core.jointlimits import bound_limits
@@ -47,8 +47,7 @@ class Solver:
 
     Raises:
         ChainError: The bend reference is not a joint of this chain.
-        InputError: A strategy is unknown or its parameters are wrong.
-        pydantic.ValidationError: An option is out of its range.
+        InputError: An option is unknown or out of its range, or a strategy is or its parameters.
     """
 
     _slots: ClassVar[tuple[str, ...]] = SLOT_ORDER
@@ -273,6 +272,8 @@ class Solver:
         """Solve rows, (m, k), that have nothing to do with each other."""
         fk = self._offsets(fk_offsets)
         out = Arrays.empty(len(rows), len(self.chain), 0, self._columns)
+        if threads is not None and threads < 1:
+            raise InputError(f"threads: expected at least 1, found {threads}")
         workers = min(threads or os.cpu_count() or 1, max(len(rows) // THREAD_SHARE, 1))
         bounds = np.linspace(0, len(rows), workers + 1).astype(int).tolist()
         parts = [slice(a, b) for a, b in pairwise(bounds)]
@@ -383,7 +384,9 @@ def _joined(settings: Settings, options: dict[str, Any]) -> Settings:
     """Return settings with single ones replaced, checked again."""
     if not options:
         return settings
-    return Settings(**{**settings.model_dump(exclude_unset=True), **options})
+    from limbik.core.validation import read_model
+
+    return read_model(Settings, {**settings.model_dump(exclude_unset=True), **options})
 
 
 _LATE_STAGES = ("finish", "choice")

@@ -44,8 +44,7 @@ class Solver2D(Solver):
 
     Raises:
         ChainError: The bend reference is not a joint of this chain.
-        InputError: A setting belongs to the 3D solver, or a strategy or its parameters are wrong.
-        pydantic.ValidationError: An option is out of its range.
+        InputError: As for `Solver`, or a setting belongs to the 3D solver.
     """
 
     _slots: ClassVar[tuple[str, ...]] = ("initial_bend",)

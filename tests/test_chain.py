@@ -45,6 +45,21 @@ BAD: list[tuple[Callable[[], Any], str | None, str]] = [
         "rest must be three finite numbers (found [0.0, 0.0])",
     ),
     (
+        lambda: Chain([Joint("a", offset=3.0), TIP]),  # type: ignore[arg-type]
+        "a",
+        "offset must be three finite numbers (found 3.0)",
+    ),
+    (
+        lambda: Chain([Joint.degrees("a", heading=10.0), TIP]),  # type: ignore[arg-type]
+        "a",
+        "heading range must be two finite numbers (found 10.0)",
+    ),
+    (
+        lambda: Chain([Joint("a", heading=("low", 1.0)), TIP]),  # type: ignore[arg-type]
+        "a",
+        "heading range must be two finite numbers (found ('low', 1.0))",
+    ),
+    (
         lambda: Chain([Joint("a"), TIP], (0.0, 0.0, np.inf)),
         None,
         "base position must be three finite numbers (found [0.0, 0.0, inf])",

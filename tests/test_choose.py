@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from pydantic import ValidationError
 
 from limbik.core.chain import Chain, Joint
-from limbik.core.errors import ChainError
+from limbik.core.errors import ChainError, InputError
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scene import scene_from
 from limbik.core.solution import Status
@@ -185,7 +184,7 @@ def test_the_choice_is_the_last_stage_of_a_trace() -> None:
 def test_what_does_not_fit_is_refused() -> None:
     with pytest.raises(ChainError, match=r"choose\.weights: no joint .*'elbo' .*'elbow'"):
         run(hinges(), choose={"weights": {"elbo": 1.0}})
-    with pytest.raises(ValidationError, match="choose needs a finish"):
+    with pytest.raises(InputError, match="choose needs a finish"):
         run(hinges(), choose={}, finish="none")
 
 

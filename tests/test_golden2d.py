@@ -100,11 +100,18 @@ def solve_case(case: Case, stage: str) -> PlanarSolution:
 CASES = load()
 
 
-@pytest.mark.parametrize("stage", STAGES)
-@pytest.mark.parametrize("case", CASES, ids=lambda case: str(case["name"]))
+EXACT = [
+    pytest.param(case, stage, id=f"{case['name']}-{stage}")
+    for case in CASES
+    for stage in STAGES
+    if stage in case["exact_stages"]
+]
+
+
+@pytest.mark.parametrize(
+    ("case", "stage"), EXACT, ids=lambda it: it if isinstance(it, str) else str(it["name"])
+)
 def test_exact_stages_give_the_golden_pose(case: Case, stage: str) -> None:
-    if stage not in case["exact_stages"]:
-        pytest.skip(f"stage {stage} of this case is not exact in the source")
     solution, expected = solve_case(case, stage), case["expect"][stage]
     tolerance = 1e-6 if stage in EARLY else 1e-5
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from limbik.core.errors import InputError
+from limbik.core.solver import Solver
 from limbik.tests.limbs import (
     LIMB,
     REGISTRY,
@@ -51,12 +52,38 @@ def test_a_bad_parameter_of_a_strategy_is_named(
     assert message in f"{fault.message} {fault.hint}"
 
 
+BAD_OPTIONS: list[tuple[dict[str, Any], str]] = [
+    (
+        {"tolerence": 0.1},
+        "error[unknown-key]: tolerence: unknown key 'tolerence' (did you mean 'tolerance'?)",
+    ),
+    ({"tolerance": -1}, "error[range]: tolerance: must be above 0.0, not -1"),
+    ({"held": {"base": "x"}}, "error[type]: held.base: must be a whole number, not text 'x'"),
+]
+
+
+@pytest.mark.parametrize(("options", "message"), BAD_OPTIONS)
+def test_a_bad_option_is_named_and_what_is_right(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        Solver(LIMB, registry=REGISTRY, **options)
+    assert str(caught.value) == message
+    with pytest.raises(InputError) as caught:
+        solver(LIMB).altered(**options)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("threads", [0, -1])
+def test_fewer_than_one_thread_is_refused(threads: int) -> None:
+    with pytest.raises(InputError, match=f"threads: expected at least 1, found {threads}"):
+        solver(LIMB).solve_many(np.ones((2, 3)), threads=threads)
+
+
 BAD_GOALS: list[tuple[dict[str, Any], str]] = [
     ({"goal": (0.0, 1.0)}, "goal: expected shape (3,), found (2,)"),
     ({"goal": (0.0, np.nan, 0.0)}, "goal: every number must be finite and below 1e+100 in size"),
     ({"goal": (0.0, 1e101, 0.0)}, "goal: every number must be finite and below 1e+100 in size"),
     ({"goal": "here"}, "goal: expected numbers of shape (3,)"),
-    ({"fk": np.zeros((3, 3))}, "FK offsets: expected shape (4, 3,), found (3, 3)"),
+    ({"fk": np.zeros((3, 3))}, "FK offsets: expected shape (4, 3), found (3, 3)"),
     ({"fk": np.full((4, 3), np.inf)}, "FK offsets: every number must be finite"),
 ]
 

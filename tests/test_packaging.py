@@ -53,6 +53,13 @@ def test_no_conftest_in_the_root() -> None:
     assert not (ROOT / "tests" / "__init__.py").exists()
 
 
+def test_every_public_name_loads_from_the_module_it_names() -> None:
+    import limbik
+
+    for name in limbik.__all__:
+        assert getattr(limbik, name).__module__ == limbik._PUBLIC[name]
+
+
 def test_no_module_is_loaded_twice() -> None:
     """A second copy under another name would compile and register everything again."""
     import limbik.core.validation  # noqa: F401

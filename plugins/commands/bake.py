@@ -30,6 +30,10 @@ def bake(
         float | None,
         typer.Option(min=0.001, max=1e6, help="Frames a second; absent = the clip's, or 30."),
     ] = None,
+    servo: Annotated[
+        str | None,
+        typer.Option(help="Put servo ticks into the file too: ax-12, or a profile (YAML)."),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene's goals as the frames of a motion and write it to a file.
@@ -37,6 +41,8 @@ def bake(
     limbik bake walk.yaml -o walk.bvh
 
     limbik bake reach.yaml -o reach.glb --follow --fps 60
+
+    limbik bake reach.yaml -o ticks.csv --servo ax-12
     """
     with reported(as_json):
         from dataclasses import replace
@@ -45,12 +51,14 @@ def bake(
         from limbik.core.body import followed
         from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.registry import Registry
+        from limbik.plugins.output.bake_servos import servo_profile, servo_values
         from limbik.plugins.output.baking import body_writer, output_for, progress
         from limbik.plugins.output.files import write_whole
 
         registry = Registry()
         writer = output_for(output, registry)
         read = read_any(scene, registry)
+        profile = servo_profile(servo, read, writer, mirrored)
         say_notes(read)
         seconds = None if fps is None else 1.0 / fps
         if isinstance(read, BodyScene):
@@ -73,6 +81,8 @@ def bake(
                 baked = bake_scene(
                     read, registry, mirrored=mirrored, frame_time=seconds, progress=report
                 )
+            if profile is not None:
+                baked = replace(baked, servos=servo_values(profile, baked))
             write_whole(output, writer.write(baked))
             met = _show({"": baked.metrics}, [read.settings.ik], output, as_json)
         if not met:

@@ -12,7 +12,7 @@ The file states no unit; `scale` makes its lengths the scene's.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -69,18 +69,18 @@ class ClipBody(Body):
     """A chain of a clip, with the clip to put the solved angles into.
 
     Attributes:
-        clip: The clip, only the frames chosen; None for none.
+        clip: The clip, only the frames chosen.
         scale: Scene lengths a length of the clip.
         at: Index in the clip of each joint of the chain.
         join: The way back to the clip's rotations.
         turns_end: Whether the end is turned to the goals too, not only carried to them.
     """
 
-    clip: Clip | None = None
-    scale: float = 1.0
-    at: tuple[int, ...] = ()
-    join: Joined | None = None
-    turns_end: bool = False
+    clip: Clip = field(kw_only=True)
+    scale: float = field(kw_only=True)
+    at: tuple[int, ...] = field(kw_only=True)
+    join: Joined = field(kw_only=True)
+    turns_end: bool = field(default=False, kw_only=True)
 
     def turning_end(self) -> Self:
         """Return the body for a solver that turns the end to its goals."""
@@ -95,8 +95,6 @@ class ClipBody(Body):
 
         The end joint keeps its channels, unless the solver turns it; so do all other joints.
         """
-        if self.clip is None or self.join is None:
-            raise ValueError("there is no clip")
         frames = self.clip.frames.copy()
         own = Y_UP.rotations(self.join.own_turns(angles))
         for k, index in enumerate(self.at if self.turns_end else self.at[:-1]):
@@ -146,10 +144,10 @@ def read_body(model: BvhModel, folder: Path) -> ClipBody:
         tuple(map(str, numbers)),
         clip.frame_time,
         matrix_to_hpb(turns @ join.frames[-1]),
-        clip,
-        model.scale,
-        tuple(at),
-        join,
+        clip=clip,
+        scale=model.scale,
+        at=tuple(at),
+        join=join,
     )
 
 

@@ -29,7 +29,7 @@ def write(bake: Bake) -> str:
     """Write a baked motion as BVH text."""
     body = bake.body
     angles = unmirrored(bake)
-    if isinstance(body, ClipBody) and body.clip is not None:
+    if isinstance(body, ClipBody):
         clip = replace(body.baked(angles), frame_time=bake.frame_time)
     else:
         clip = clip_of(body.motion(angles, bake.frame_time))

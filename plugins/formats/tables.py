@@ -48,12 +48,15 @@ def write_csv(bake: Bake) -> str:
     writer = csv.writer(text, lineterminator="\n")
     angles = [f"{name} {axis}" for name in solution.chain.names for axis in AXES]
     own = [f"{name} [{values.unit}]" for name in values.names] if values else []
+    told = list(bake.servos.names) if bake.servos else []
     turns = bake.goal_turns
     head = ["name", "time", *PLACE, *(() if turns is None else TURN)]
     head += ["status", "distance", "iterations"]
-    writer.writerow([*head, *angles, *own])
+    writer.writerow([*head, *angles, *own, *told])
     degrees = np.degrees(solution.angles).reshape(len(solution.goal), -1).tolist()
-    rows = values.rows.tolist() if values else [[] for _ in degrees]
+    rows, ticks = (
+        kind.rows.tolist() if kind else [[] for _ in degrees] for kind in (values, bake.servos)
+    )
     columns = (
         bake.scene.goal_names,
         _times(bake),
@@ -64,9 +67,10 @@ def write_csv(bake: Bake) -> str:
         np.asarray(solution.iterations).tolist(),
         degrees,
         rows,
+        ticks,
     )
-    for name, time, goal, turn, *rest, turned, row in zip(*columns, strict=True):
-        writer.writerow([name, time, *goal, *turn, *rest, *turned, *row])
+    for name, time, goal, turn, *rest, turned, row, tick in zip(*columns, strict=True):
+        writer.writerow([name, time, *goal, *turn, *rest, *turned, *row, *tick])
     return text.getvalue()
 
 
@@ -94,6 +98,9 @@ def write_json(bake: Bake) -> str:
     if values:
         own = {"names": list(values.names), "unit": values.unit, "rows": values.rows.tolist()}
         record["model_values"] = own
+    if bake.servos:
+        record["servos"] = list(bake.servos.names)
+        record["servo_ticks"] = bake.servos.rows.tolist()
     return to_json(record) + "\n"
 
 
@@ -119,6 +126,8 @@ def write_npz(bake: Bake) -> bytes:
         arrays["quaternions"] = turn_quaternions(bake.goal_turns)
     if values:
         arrays |= {"model_names": np.array(values.names), "model_values": values.rows}
+    if bake.servos:
+        arrays |= {"servos": np.array(bake.servos.names), "servo_ticks": bake.servos.rows}
     content = io.BytesIO()
     np.savez_compressed(content, **arrays)
     return content.getvalue()
@@ -131,7 +140,7 @@ def limbik_outputs() -> Iterable[Output]:
     columns = "Columns of the motion, angles in degrees."
     arrays = "Arrays of the motion, angles in radians."
     return [
-        Output("csv", (".csv",), write_csv, line, write_body_csv),
-        Output("json", (".json",), write_json, columns, write_body_json),
-        Output("npz", (".npz",), write_npz, arrays, write_body_npz),
+        Output("csv", (".csv",), write_csv, line, write_body_csv, True),
+        Output("json", (".json",), write_json, columns, write_body_json, True),
+        Output("npz", (".npz",), write_npz, arrays, write_body_npz, True),
     ]

@@ -193,24 +193,34 @@ def _row(joint: UrdfJoint) -> tuple[str, ...]:
 
 
 def _candidates(robot: Robot) -> Iterable[tuple[str, str, str]]:
-    """Chains from where branches part to their tips, with two hinges or more."""
+    """Chains from where branches part to their tips, with two hinges or more.
+
+    What limbik does not turn at a tip, such as the fingers of a gripper, is left out: the chain
+    ends above it.
+    """
     parents = [joint.parent for joint in robot.joints.values()]
+    found: dict[str, tuple[str, str, str]] = {}
     for tip in robot.links:
         if tip in parents or tip not in robot.joints:
             continue
-        way = robot.up_from(tip)
-        joints = []
-        for link in way[:-1]:
+        joints: list[UrdfJoint] = []
+        for link in robot.up_from(tip)[:-1]:
             joint = robot.joints[link]
             if refusals(joint):
-                break
+                if _is_chain(joints):
+                    break
+                joints = []
+                continue
             joints.append(joint)
             forks = parents.count(joint.parent) > 1
             if forks and _is_chain(joints):
                 break
-        hinges = [joint.name for joint in reversed(joints) if joint.is_hinge]
         if _is_chain(joints):
-            yield joints[-1].parent, tip, f"{len(hinges)} hinges: {', '.join(hinges)}"
+            end = joints[0].child
+            hinges = [joint.name for joint in reversed(joints) if joint.is_hinge]
+            words = f"{len(hinges)} hinges: {', '.join(hinges)}"
+            found.setdefault(end, (joints[-1].parent, end, words))
+    return found.values()
 
 
 def _is_chain(upward: list[UrdfJoint]) -> bool:

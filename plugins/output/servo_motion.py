@@ -1,11 +1,11 @@
-"""A joint motion as servos play it: the ticks of every sample (J-08)."""
+"""A motion as servos play it: the ticks of every sample (J-08)."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from limbik.core.chain import AXES
+from limbik.core.chain import AXES, Chain
 from limbik.core.errors import Fault, InputError, shortlist
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
@@ -15,7 +15,7 @@ from limbik.plugins.paths.joints import JointMotion
 
 @dataclass(frozen=True, eq=False)
 class ServoMotion:
-    """What k servos are told along a trajectory.
+    """What k servos are told along a path.
 
     Attributes:
         names: Joint and axis of each servo, such as `elbow pitch`.
@@ -37,24 +37,38 @@ class ServoMotion:
 
 
 def servo_motion(profile: Profile, motion: JointMotion) -> ServoMotion:
-    """Turn a joint motion into servo commands.
+    """Turn a joint motion into servo commands; as `servo_path`."""
+    samples, chain = motion.samples, motion.solution.chain
+    return servo_path(profile, chain, motion.angles, samples.positions, samples.times)
+
+
+def servo_path(
+    profile: Profile, chain: Chain, angles: Array, places: Array, times: Array
+) -> ServoMotion:
+    """Turn the angles along a path into servo commands.
+
+    Args:
+        profile: Which servo turns what.
+        chain: n joints.
+        angles: HPB, (m, n, 3) [rad].
+        places: Where the end shall be, (m, 3) [length].
+        times: (m,) [s].
 
     Raises:
         InputError: An angle is outside its servo's range; every such joint is named with the
             first time.
     """
-    chain = motion.solution.chain
-    held = motion.angles.copy()
+    held = angles.copy()
     names, columns, faults = [], [], list[Fault]()
     for (joint, axis), servo in profile.servos.items():
         name = f"{chain.names[joint]} {AXES[axis]}"
-        angles = motion.angles[:, joint, axis]
-        ticks = np.array([servo.tick(angle) for angle in angles.tolist()], np.int64)
+        turned = angles[:, joint, axis]
+        ticks = np.array([servo.tick(angle) for angle in turned.tolist()], np.int64)
         wrong = np.flatnonzero([not servo.accepts(tick) for tick in ticks.tolist()])
         if len(wrong):
             first = wrong[0]
-            when = f"{motion.samples.times[first]:.4g} s: "
-            faults.append(out_of_range(name, float(angles[first]), servo, when))
+            when = f"{times[first]:.4g} s: "
+            faults.append(out_of_range(name, float(turned[first]), servo, when))
         held[:, joint, axis] = [servo.angle(tick) for tick in ticks.tolist()]
         names.append(name)
         columns.append(ticks)
@@ -62,5 +76,5 @@ def servo_motion(profile: Profile, motion: JointMotion) -> ServoMotion:
         raise InputError(shortlist(faults))
     ids = np.array([servo.id for servo in profile.servos.values()], np.int64)
     positions, _ = forward_kinematics(chain, held)
-    distance = np.linalg.norm(positions[:, -1] - motion.samples.positions, axis=1)
+    distance = np.linalg.norm(positions[:, -1] - places, axis=1)
     return ServoMotion(tuple(names), ids, np.stack(columns, axis=-1), distance)

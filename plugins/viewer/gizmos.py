@@ -1,6 +1,7 @@
 """Handles to drag: the goal of a chain, and the pole of the 2D solver."""
 
 from collections.abc import Callable
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,7 @@ class Gizmo:
         self._rotates = False
         self._visible = True
         self._held = False
+        self._turns = Lock()  # of the threads on which drags come
         self._is_put = False  # whether the handle is where it was put
         far = (-FAR, FAR)
         self._handle = server.scene.add_transform_controls(
@@ -76,19 +78,19 @@ class Gizmo:
 
     def _dragged(self, event: TransformControlsEvent) -> None:
         """Take the newest pose; one that is not finite, or is refused, is put back."""
-        self._is_put = False
         if event.phase == "start":
             self._held = True
             return
-        if event.phase == "end":
-            self._held = False
-        place, wxyz = np.array(event.target.position), np.array(event.target.wxyz)
-        taken = False
-        if np.isfinite(place).all() and np.isfinite(wxyz).all() and wxyz.any():
-            turn = self._turn if self._flat is not None else turn_from_page(wxyz)
-            taken = self._moved(from_page(place), turn, event.phase == "end")
-        if not taken:
-            self._handle.position, self._handle.wxyz = to_page(self._place), self._wxyz()
+        with self._turns:  # read inside: the last to come in finds the newest
+            self._held = self._held and event.phase != "end"
+            self._is_put = False
+            place, wxyz = np.array(event.target.position), np.array(event.target.wxyz)
+            taken = False
+            if np.isfinite(place).all() and np.isfinite(wxyz).all() and wxyz.any():
+                turn = self._turn if self._flat is not None else turn_from_page(wxyz)
+                taken = self._moved(from_page(place), turn, event.phase == "end")
+            if not taken:
+                self._handle.position, self._handle.wxyz = to_page(self._place), self._wxyz()
 
     def put(self, place: Array, turn: Array | None = None) -> None:
         """Put it somewhere, world; while somebody holds it only what goes with it moves."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import floor, log10
+from threading import Lock
 from typing import Any
 
 from viser import GuiApi, GuiEvent
@@ -27,18 +28,19 @@ def add_control(gui: GuiApi, control: Control, value: Any, change: Change, label
     handle = _made(gui, control, value, label or control.name)
     if handle is None:
         return None
-    kept = [handle.value]
+    kept, turns = [handle.value], Lock()  # events come on many threads
 
     def taken(event: GuiEvent[Any]) -> None:
-        given = event.target.value
         if event.client is None:  # set by ourselves
-            kept[0] = given
+            kept[0] = event.target.value
             return
-        meant = (control.initial if given else None) if control.kind == "switch" else given
-        if change(control, meant):
-            kept[0] = given
-        else:
-            event.target.value = kept[0]
+        with turns:  # read inside: the last to come in finds the newest
+            given = event.target.value
+            meant = (control.initial if given else None) if control.kind == "switch" else given
+            if change(control, meant):
+                kept[0] = given
+            else:
+                event.target.value = kept[0]
 
     handle.on_update(taken)
     return handle
@@ -54,13 +56,14 @@ class Slider:
 
     def __init__(self, handle: Any, change: Callable[[int], Any]) -> None:
         self.handle, self._change = handle, change
-        self._known = int(handle.value)
+        self._known, self._turns = int(handle.value), Lock()
         handle.on_update(self._moved)
 
     def _moved(self, event: GuiEvent[Any]) -> None:
         if event.client is not None:
-            self._known = int(event.target.value)
-            self._change(self._known)
+            with self._turns:
+                self._known = int(event.target.value)
+                self._change(self._known)
 
     def show(self, value: int, last: int | None = None) -> None:
         """Move it, unless it is there; `last` is a new end of its range."""

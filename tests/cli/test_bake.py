@@ -1,10 +1,12 @@
 """The commands bake, inspect and schema, as a user calls them."""
 
+import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 import yaml
 
@@ -209,3 +211,38 @@ def test_init_refers_to_a_schema_beside_it(run: Run, tmp_path: Path, template: s
     (tmp_path / "limbik.schema.json").write_text("{}")
     assert run("init", "second", "--template", template)[0] == 0
     assert (tmp_path / "limbik.schema.json").read_text() == "{}"
+
+
+def test_servo_ticks_are_those_of_a_solve(run: Run, tmp_path: Path) -> None:
+    scene, profile = CONFIGS / "cosine-arm.yaml", CONFIGS / "servos" / "cosine-arm.yaml"
+    solved = json.loads(run("solve", str(scene), "--servo", str(profile), "--json")[1])
+    expected = [[each["tick"] for each in goal["servo"]["commands"]] for goal in solved["goals"]]
+    for ending in ("csv", "json", "npz"):
+        run("bake", str(scene), "--servo", str(profile), "-o", f"ticks.{ending}")
+    with (tmp_path / "ticks.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    names = [name for name in rows[0] if name.startswith("servo ")]
+    assert names[0] == "servo 1 waist heading"
+    assert [[int(row[name]) for name in names] for row in rows] == expected
+    record = json.loads((tmp_path / "ticks.json").read_text())
+    assert (record["servos"], record["servo_ticks"]) == (names, expected)
+    with np.load(tmp_path / "ticks.npz") as file:
+        assert file["servos"].tolist() == names
+        assert file["servo_ticks"].tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("scene", "more", "message"),
+    [
+        ("cosine-arm", ["-o", "t.bvh"], "--servo: bvh files hold no servo ticks"),
+        ("cosine-arm", ["-o", "t.csv", "--mirrored"], "--mirrored: the servos are those of"),
+        ("body", ["-o", "t.csv"], "--servo: needs a scene with one chain"),
+    ],
+)
+def test_what_has_no_place_for_servo_ticks_is_refused(
+    run: Run, tmp_path: Path, scene: str, more: list[str], message: str
+) -> None:
+    status, _, err = run("bake", str(CONFIGS / f"{scene}.yaml"), "--servo", "ax-12", *more)
+    assert status == 2
+    assert message in err
+    assert not list(tmp_path.glob("t.*"))

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from limbik.core.baking import bake_scene
+from limbik.core import bodyscene
+from limbik.core.baking import bake_body, bake_scene
 from limbik.core.errors import InputError, SceneError
 from limbik.core.frames import Y_UP
 from limbik.core.pose import forward_kinematics
@@ -96,7 +97,6 @@ def test_a_baked_clip_read_back_has_the_solved_angles(
     written.write_text(bvh_out.write(bake))
     back = replace(scene.body, clip=read_bvh(written))  # type: ignore[type-var]
     assert isinstance(back, ClipBody)
-    assert back.clip is not None
     assert back.join is not None
     for k, index in enumerate(back.at[:-1]):
         joint = back.clip.joints[index]
@@ -114,7 +114,6 @@ def test_all_but_the_solved_joints_stays_as_it_was(walk: Path, scene_of: Solve) 
     angles = bake_scene(scene, REGISTRY).solution.angles
     body = scene.body
     assert isinstance(body, ClipBody)
-    assert body.clip is not None
     baked = body.baked(angles)
     changed = np.flatnonzero((baked.frames != body.clip.frames).any(axis=0))
     assert set(changed) <= {6, 7, 8, 12, 13, 14}
@@ -124,7 +123,6 @@ def test_all_but_the_solved_joints_stays_as_it_was(walk: Path, scene_of: Solve) 
 def test_a_clips_own_angles_go_through_the_chain_unharmed(walk: Path) -> None:
     """The clip's rotations as the chain's angles give the clip's channels back."""
     body = body_of(walk, "LeftHip", "LeftAnkle")
-    assert body.clip is not None
     assert body.join is not None
     angles = []
     for k, index in enumerate(body.at):
@@ -188,13 +186,10 @@ def test_a_chain_of_its_own_becomes_a_clip_another_reader_reads(
 
 
 @pytest.mark.parametrize("follow", [False, True])
-def test_a_clip_from_the_environment_bakes_without_loss(
-    follow: bool, tmp_path: Path, bvh_positions: Positions
-) -> None:
+def test_a_clip_bakes_without_loss(follow: bool, tmp_path: Path, bvh_positions: Positions) -> None:
     """LIMBIK_TEST_BVH: file:base:end of a real capture; all frames but an added first pose."""
-    given = os.environ.get("LIMBIK_TEST_BVH", "")
-    if not given:
-        pytest.skip("LIMBIK_TEST_BVH names no clip, as file:base:end")
+    shipped = Path(__file__).parents[2] / "configs" / "walk.bvh"
+    given = os.environ.get("LIMBIK_TEST_BVH", f"{shipped}:LeftUpLeg:LeftFoot")
     file, base, end = given.rsplit(":", 2)
     last = len(read_bvh(Path(file)).frames) - 1
     options = "options: {max_iterations: 200, tolerance: 0.001}\n"
@@ -376,3 +371,19 @@ def test_inspection_names_chains_that_can_be_read(walk: Path) -> None:
     ends = [(base, end) for base, end, _ in found.chains]
     assert ends == [("LeftHip", "LeftAnkle"), ("RightHip", "RightAnkle")]
     assert all(len(body_of(walk, base, end).chain) == 3 for base, end in ends)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_positions_are_those_of_pybvh(tmp_path: Path) -> None:
+    """Of a clip as it is, and of one with turned joints that limbik has written."""
+    pybvh = pytest.importorskip("pybvh")
+    shipped = Path(__file__).parents[2] / "configs"
+    body = bake_body(bodyscene.read_body(shipped / "body.yaml", REGISTRY), REGISTRY)
+    (tmp_path / "body.bvh").write_text(bvh_out.write_body(body))
+    for path in (shipped / "walk.bvh", tmp_path / "body.bvh"):
+        clip, other = read_bvh(path), pybvh.read_bvh_file(str(path))
+        places, _ = clip_motion(clip).world()
+        names = [node.name for node in other.nodes]
+        for index, name in enumerate(clip.names):
+            expected = other.node_positions()[:, names.index(name)]
+            np.testing.assert_allclose(Y_UP.points(places[:, index]), expected, atol=1e-6)

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from limbik.core.scene import read_scene
+from limbik.core.solving import solve_scene
 from limbik.plugins.viewer.axes import from_page, to_page
 from limbik.plugins.viewer.session import LAST
 from limbik.tests.viewer.process import viewing
@@ -183,6 +185,7 @@ def test_a_person_drags_switches_and_looks_at_stages(visit: Visiting, tmp_path: 
 
 def test_scene_and_picture_can_be_taken_away(visit: Visiting, tmp_path: Path) -> None:
     seen = visit("leg-pole")
+    seen.pull(0, 40.0)
     seen.tab("Show")
     for button, ending in (("save as scene", "yaml"), ("save picture", "png")):
         seen.page.get_by_role("button", name=button).click()
@@ -190,7 +193,9 @@ def test_scene_and_picture_can_be_taken_away(visit: Visiting, tmp_path: Path) ->
         with seen.page.expect_download() as coming:
             link.click(timeout=1e3 * PATIENCE)
         coming.value.save_as(tmp_path / f"saved.{ending}")
-    assert "solver: 2d" in (tmp_path / "saved.yaml").read_text(encoding="utf-8")
+    (again,) = solve_scene(read_scene(tmp_path / "saved.yaml"))
+    (shown,) = seen.session.solve().values()
+    np.testing.assert_array_equal(again.angles, shown.angles)
     assert (tmp_path / "saved.png").read_bytes().startswith(b"\x89PNG")
     assert seen.outside == []
 

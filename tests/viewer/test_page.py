@@ -30,7 +30,7 @@ class Client:
     """Somebody who speaks to the page's server as the browser does."""
 
     def __init__(self, viewer: Viewer) -> None:
-        self.viewer = viewer
+        self.viewer, self._held = viewer, ""
         self._line = websockets.connect(
             viewer.url.replace("http", "ws"),
             subprotocols=[f"viser-v{viser.__version__}"],
@@ -49,8 +49,12 @@ class Client:
     def drag(self, gizmo: str, place: Any, over: bool = False) -> None:
         """Send a place in the page's axes."""
         x, y, z = map(float, place)
+        if gizmo != self._held:
+            self._held = gizmo
+            self.send(wire.TransformControlsDragStartMessage(gizmo))
         self.send(wire.TransformControlsUpdateMessage(gizmo, (1.0, 0.0, 0.0, 0.0), (x, y, z)))
         if over:
+            self._held = ""
             self.send(wire.TransformControlsDragEndMessage(gizmo))
 
     def set(self, label: str, value: Any) -> None:
@@ -275,8 +279,6 @@ def test_a_handle_that_is_held_is_left_to_who_holds_it(visit: Visiting) -> None:
     page = client.viewer.page
     handle, goal = page.goals["planar"]._handle, np.array([0.0, 1.4, 0.9])
     beside = goal + np.array([0.3, 0.0, 0.0])  # off the plane, where the goal does not go
-    client.send(wire.TransformControlsDragStartMessage("/planar-goal"))
-    until(lambda: page.goals["planar"]._held)
     client.drag("/planar-goal", to_page(beside))
     until(lambda: np.allclose(page.session.chain.goal, goal))
     page.act(lambda: None)
