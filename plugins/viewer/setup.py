@@ -13,7 +13,6 @@ from limbik.core.chain import Chain, Joint
 from limbik.core.errors import LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
-from limbik.core.pose import forward_kinematics
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
@@ -335,7 +334,7 @@ def _fitting(settings: Settings, in_plane: bool) -> Settings:
 
 def _beside(chain: Chain) -> Pole:
     """Return a pole for a chain that has none: off the middle of its rest pose, along y."""
-    positions, rotations = forward_kinematics(chain, chain.rest)
+    positions, rotations = chain.rest_pose
     place = (positions[0] + positions[-1]) / 2.0 + 0.8 * chain.length * rotations[0, :, 1]
     x, y, z = np.round(place, 6).tolist()
     return Pole(position=(x, y, z))
