@@ -12,7 +12,7 @@ from limbik.core.chain import Chain
 from limbik.core.errors import Fault
 from limbik.core.rotation import Array, hpb_to_matrix
 from limbik.core.scenegoals import turn_paths
-from limbik.core.scenemodel import SceneModel, SolveModel
+from limbik.core.scenemodel import SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
 from limbik.core.strategy import mirrored
@@ -160,8 +160,7 @@ class WholeSolver:
 
 def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
     """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
-    planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if turns_end or planned or model.solver == "2d":
+    if turns_end or model.is_planned or model.solver == "2d":
         return
     if model.solver in OWN_SOLVERS and model.options.end_orientation:
         return

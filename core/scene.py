@@ -166,8 +166,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
 
     if source.body is not None:
-        title = Path(document.name).stem.strip("<>")
-        return build_scene(title, model, document, folder, registry, source.body)
+        return build_scene(document.title, model, document, folder, registry, source.body)
     joints = [joint.name for joint in model.chain.joints]
     faults += _joint_faults(joints, document)
     chain = None
@@ -175,7 +174,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         chain = _chain(model)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
-    title = Path(document.name).stem.strip("<>")
+    title = document.title
     return build_scene(title, model, document, folder, registry, None, chain, joints, faults)
 
 
@@ -217,7 +216,7 @@ def build_scene(
             solver, turns_end = _solver(model, chain, registry)
             found += turn_faults(model, turns_end, document)
     except ChainError as error:
-        found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
+        found += [document.placed(fault, ("solver",)) for fault in error.faults]
     turns = taken_turns(model, goals, turns_end)
     found += [*file_axes_faults(model, goals, turns, document), *goals.faults]
     if chain is None or found:
@@ -300,4 +299,4 @@ def _chain_faults(error: ChainError, model: SceneModel, document: Document) -> t
     for index, joint in enumerate(model.chain.joints):
         if joint.name == error.joint:
             path = (*path, index)
-    return tuple(document.fault(f.code, f.message, path, hint=f.hint) for f in error.faults)
+    return tuple(document.placed(fault, path) for fault in error.faults)

@@ -47,6 +47,11 @@ class Document:
     keys: dict[KeyPath, Position]
     at: KeyPath = ()
 
+    @property
+    def title(self) -> str:
+        """Name of the file without folder and ending."""
+        return Path(self.name).stem.strip("<>")
+
     def under(self, path: Sequence[str | int]) -> "Document":
         """Return the part of the document at a path, as a document with places of its own."""
         content = self.content
@@ -78,6 +83,13 @@ class Document:
         line, column = self.key_position(path) if at_key else self.position(path)
         key = key_text((*self.at, *path))
         return Fault(code, message, key, self.name, line, column, hint)
+
+    def placed(self, fault: Fault, path: Sequence[str | int]) -> Fault:
+        """Point a fault that has no place of its own at a value of this document."""
+        if fault.line:
+            return fault
+        message = f"{fault.file}: {fault.message}" if fault.file else fault.message
+        return self.fault(fault.code, message, path, hint=fault.hint)
 
 
 def read_yaml(source: str | bytes, name: str) -> Document:
