@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from limbik.core.chain import vector
 from limbik.core.errors import Fault
 from limbik.core.formats import Body
 from limbik.core.frames import BY_NAME
@@ -63,8 +64,8 @@ def pole_of(model: SolveModel) -> Pole | None:
     """Give the pole, in limbik's axes."""
     if model.pole is None:
         return None
-    x, y, z = turned(model, np.array(model.pole.position)).tolist()
-    return Pole(position=(x, y, z), rotor=model.pole.rotor)
+    place = vector(turned(model, np.array(model.pole.position)))
+    return Pole(position=place, rotor=model.pole.rotor)
 
 
 def turned(model: SolveModel, places: Array) -> Array:

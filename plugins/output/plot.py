@@ -65,11 +65,16 @@ def check_plot(path: Path) -> None:
         InputError: The ending is none of `FORMATS`.
         EnvironmentProblem: matplotlib is not installed.
     """
-    if path.suffix.lower().removeprefix(".") not in FORMATS:
+    if form_of(path) not in FORMATS:
         message = f"the file must end in {', '.join(f'.{f}' for f in FORMATS)}, not '{path.name}'"
         raise InputError(Fault("choice", message, "--plot"))
     if find_spec("matplotlib") is None:
         raise EnvironmentProblem("drawing needs matplotlib: pip install 'limbik[plot]'")
+
+
+def form_of(path: Path) -> str:
+    """Return what a picture's ending asks for, one of `FORMATS` if `check_plot` took it."""
+    return path.suffix.lower().removeprefix(".")
 
 
 def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> bytes:
@@ -90,14 +95,10 @@ def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> byte
 
 
 def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     shown = list(zip(scene.goal_names, solutions, strict=True))[:MOST_PICTURES]
     columns, rows = grid(len(shown))
     width, height = (9.0, 6.8) if len(shown) == 1 else (3.7 * columns, 4.0 * rows + 1.2)
-    figure = Figure(figsize=(width, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height)
     bounds = _bounds([solution for _, solution in shown])
     if len(shown) == 1:
         _draw_views(figure, scene, *shown[0], bounds)
@@ -111,11 +112,33 @@ def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
     return figure
 
 
-def picture(figure: "Figure", form: str) -> bytes:
+def new_figure(width: float, height: float) -> "Figure":
+    """Return an empty picture of a size [inches]; no window system is asked."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), facecolor=PAPER)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def picture(figure: "Figure", form: str, dpi: int = 130) -> bytes:
     """Return the content of a figure's file."""
     content = BytesIO()
-    figure.savefig(content, format=form, dpi=130, metadata=undated(form))
+    figure.savefig(content, format=form, dpi=dpi, metadata=undated(form))
     return content.getvalue()
+
+
+def seen_axes(extent: Array) -> tuple[int, int]:
+    """Return the axes of a flat view of points, to the right and up; y is up if it is seen.
+
+    Left out is the axis along which they spread least.
+
+    Args:
+        extent: How far the points spread along x, y, z, (3,) [length].
+    """
+    flat = int(np.argmin(extent + np.array([0.0, 1e-9, 0.0])))
+    return ((2, 1), (0, 2), (0, 1))[flat]
 
 
 def grid(count: int) -> tuple[int, int]:
@@ -231,6 +254,14 @@ def _draw_views(
         axes.tick_params(labelsize=7, length=0)
 
 
+def write_above(axes: Any, lines: Sequence[tuple[float, str, dict[str, Any]]]) -> None:
+    """Write lines above a picture: how far up [points], text and look of each."""
+    for points, text, style in lines:
+        axes.annotate(
+            text, (0.5, 1.0), (0.0, points), "axes fraction", "offset points", ha="center", **style
+        )
+
+
 def _caption(axes: Any, scene: Scene, name: str, solution: Solution) -> None:
     """Write the goal's name, how it went, and the joints at their limits."""
     ending = f"{outcome(solution)}, distance {float(solution.distance):.2g}"
@@ -239,10 +270,7 @@ def _caption(axes: Any, scene: Scene, name: str, solution: Solution) -> None:
         (20.0, ending, {"color": GOAL if solution.reached else LIMIT}),
         (8.0, _limit_text(scene, solution), {"fontsize": 7.5, "color": LIMIT}),
     )
-    for points, text, style in lines:
-        axes.annotate(
-            text, (0.5, 1.0), (0.0, points), "axes fraction", "offset points", ha="center", **style
-        )
+    write_above(axes, lines)
 
 
 def _limit_text(scene: Scene, solution: Solution) -> str:
