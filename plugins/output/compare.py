@@ -155,12 +155,12 @@ def _draw(axes: Any, solution: Solution, order: tuple[int, int], colour: str) ->
     axes.plot(*places.T, color=colour, lw=5.0, solid_capstyle="round", alpha=0.85, zorder=2)
     chain, angles = solution.chain, solution.angles
     past = np.maximum(chain.low - angles, angles - chain.high).max(axis=1)
-    touched = {text.rsplit(" ", 1)[0] for text in solution.limits_touched()}
-    for joint, name in enumerate(chain.names):
+    resting = {joint for joint, _ in solution.resting_axes()}
+    for joint in range(len(chain)):
         mark, fill = "o", PAPER
         if past[joint] > AT_LIMIT:
             mark, fill = "s", LIMIT
-        elif name in touched:
+        elif joint in resting:
             fill = LIMIT
         edge = LIMIT if fill == LIMIT else INK
         axes.plot(*places[joint], mark, ms=6.5, mfc=fill, mec=edge, mew=1.3, zorder=4)
