@@ -158,9 +158,11 @@ def chains(draw: st.DrawFn, generic: bool = False) -> Chain:
 
 
 def _wide(draw: st.DrawFn) -> tuple[float, float] | None:
+    """Draw a wide range whose ends are not equally far from its middle: no goal lies between."""
     if draw(st.booleans()):
         return None
-    return -draw(st.integers(20, 170)), draw(st.integers(20, 170))
+    low = draw(st.integers(20, 170))
+    return -low, draw(st.integers(20, 170).filter(lambda high: high != low))
 
 
 @st.composite
