@@ -42,12 +42,13 @@ from limbik.core.choices import checkable, strategy_faults
 from limbik.core.errors import ChainError, Fault, SceneError, shortlist
 from limbik.core.formats import Body
 from limbik.core.pole import Pole
-from limbik.core.posegoals import PoseBatch, turn_faults
+from limbik.core.posegoals import PoseBatch
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenegoals import file_axes_faults, goals_of, pole_of, taken_turns, twice
 from limbik.core.scenemodel import JointModel, JudgeModel, SceneModel, SolveModel
 from limbik.core.sceneoptions import option_faults, unknown_joints
+from limbik.core.scenesolver import turn_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel

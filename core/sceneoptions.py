@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from limbik.core.errors import Fault
 from limbik.core.scenegoals import Goals, axes_faults
 from limbik.core.scenemodel import SceneModel, SolveModel
-from limbik.core.sceneplane import solver_faults
+from limbik.core.scenesolver import solver_faults
 from limbik.core.settings import joint_tables, narrowing
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath
