@@ -46,7 +46,7 @@ class Run:
     @property
     def engine(self) -> str:
         """The engine asked for; without one `serial` for a small experiment."""
-        posed = sum(trial.count * len(trial.scene.chain) for trial in self.experiment.trials)
+        posed = sum(trial.posed for trial in self.experiment.trials)
         return self.experiment.model.engine or (SERIAL if posed <= SMALL else LOCAL)
 
     @property
