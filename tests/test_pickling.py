@@ -55,7 +55,7 @@ def test_a_solver_that_has_solved_comes_back(kind: str, way: Callable[[Any], Any
 
 
 def test_pose_and_body_solvers_are_pickled() -> None:
-    axes = {"heading": (0.0, 0.0), "pitch": (-1.5, 1.5), "bank": (-2.0, 2.0)}
+    axes: dict[str, Any] = {"heading": (0.0, 0.0), "pitch": (-1.5, 1.5), "bank": (-2.0, 2.0)}
     arm = PoseSolver(Chain([Joint(f"j{k}", offset=(0.0, 0.0, 9.0), **axes) for k in range(4)]))
     body = BodySolver.of(read_body(ROOT / "configs" / "body.yaml"))
     goals = {"spine": (0.2, 0.77, 0.0)}
