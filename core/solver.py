@@ -62,12 +62,9 @@ class Solver(Portable):
         registry: Registry | None = None,
         **options: Any,
     ) -> None:
-        expected(chain, Chain, "chain")
         own = Settings() if settings is None else expected(settings, Settings, "settings")
-        given = _joined(own, options)
-        self._check_fit(chain, given)
-        self.chain = chain
-        self.settings = given
+        self.chain, self.settings = expected(chain, Chain, "chain"), _joined(own, options)
+        self._check_fit(self.chain, self.settings)
         self.registry = Registry() if registry is None else registry
         self._look_up()
         self._fixed: tuple[Any, ...] = self._flatten()
