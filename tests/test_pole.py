@@ -160,7 +160,7 @@ def test_rotors_of_many_goals_are_those_of_each() -> None:
 
 
 def test_a_share_out_of_range_is_refused() -> None:
-    with pytest.raises(ValueError, match="less than or equal to 1"):
+    with pytest.raises(InputError, match="twist: must be at most 1"):
         PoleRotor(twist=1.5)
 
 
