@@ -133,7 +133,7 @@ def _finish_samples() -> list[Sample]:
     folded = np.array([[0.0, 0.0, 0.0], [0.0, np.pi, 0.0], [0.0, 0.0, 0.0]])
 
     def sample(goal: list[float], low: Any, high: Any, angles: Any) -> Sample:
-        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 64))
+        place, base, rows = np.zeros(3), np.eye(3), np.zeros((3, 72))
         chain = (offsets, frozen, place, base, low, high)
         own = np.zeros((3, OWN_WIDTH))
         work = angles, rows, np.zeros(2)
@@ -229,7 +229,7 @@ FINISH = Slot(
         Argument("reachable", "count", "0 if the bones cannot span the distance, else 1"),
         _PARAMS,
         Argument("angles", "matrix", "(n, 3) IN/OUT: CCD's heading, pitch, bank [rad]", True),
-        Argument("scratch", "matrix", "(n, 64) IN/OUT to work in, of any content", True),
+        Argument("scratch", "matrix", "(n, 72) IN/OUT to work in, of any content", True),
         Argument(
             "verdict",
             "vector",

@@ -49,7 +49,7 @@ def new_pose(n: int) -> Pose:
         np.zeros((n, 3)),
         np.zeros((n, WIDTH)),
         np.zeros((8, 3)),
-        np.zeros((n, 64)),
+        np.zeros((n, 72)),
         np.zeros(2),
     )
 

@@ -143,7 +143,7 @@ class Pose(NamedTuple):
     scratch: Array
     """Arguments of strategies, (8, 3)."""
     finish_rows: Array
-    """What a finish works in, (n, 64)."""
+    """What a finish works in, (n, 72)."""
     verdict: Array
     """Whether a finish tried all in vain, and the least distance it found [length], (2,)."""
 

@@ -34,6 +34,9 @@ from limbik.core.rotation import Array
 # Tasks: pull inside; turn on by a step; bar a step that leads out; find the way; aim.
 PULL, TURN_ON, BAR, WAY, AIM = 0, 1, 2, 3, 4
 
+PROBE = 1e-6  # [rad]; the part of a step that shows whether a limit bars it
+PUSHED = 1e-3  # share of the probe; a joint pulled back by more is at its limit
+
 call_limit_task = late("limbik.core.callers", "call_limit_task")
 
 

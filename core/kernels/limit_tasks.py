@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from limbik.core.jit import kernel, late
 from limbik.core.kernels.ease import eased_gap
-from limbik.core.kernels.limit import AIM, BAR, TURN_ON, WAY, put, taken
+from limbik.core.kernels.limit import AIM, BAR, PROBE, PUSHED, TURN_ON, WAY, put, taken
 from limbik.core.kernels.own import (
     ANGLES,
     LIMIT,
@@ -24,7 +24,6 @@ from limbik.core.kernels.rotation import (
     ZERO_TURN,
     Matrix,
     Vector,
-    add,
     angle_between,
     dot,
     hpb_to_matrix,
@@ -41,8 +40,6 @@ from limbik.core.kernels.rotation import (
 from limbik.core.rotation import Array
 
 TRIES = 4  # sizes of a turn that are tried before a joint is left alone
-PROBE = 1e-6  # [rad]; the part of a step that shows whether a limit bars it
-PUSHED = 1e-3  # share of the probe; a joint pulled back by more is at its limit
 
 call_limit = late("limbik.core.callers", "call_limit")
 
@@ -91,31 +88,42 @@ def _bar(work: Array) -> Vector:
     A tiny part of the step shows whether it is pulled back. A limit may pull aslant to its
     surface; the gradient is how far a turn about each axis leads out, to which sliding is square.
     """
-    angles = taken(work, ANGLES)
-    pull = _pull(unit(taken(work, STEP)), angles, work)
+    turn, bank = hpb_to_matrix(taken(work, ANGLES)), work[ANGLES + 2]
+    pull = _pull(unit(taken(work, STEP)), turn, bank, work)
     if not norm(pull) > PUSHED:
         return 0.0, 0.0, 0.0
     back = unit(pull)
-    found = (0.0, 0.0, 0.0)
-    for number in range(6):
-        axis, sign = number % 3, 1.0 if number < 3 else -1.0
-        turn = (
-            sign if axis == 0 else 0.0,
-            sign if axis == 1 else 0.0,
-            sign if axis == 2 else 0.0,
-        )
-        out = dot(_pull(turn, angles, work), back)
-        if abs(out) > PUSHED and found[axis] == 0.0:
-            found = add(found, scale(turn, out))
+    found = (
+        _out((1.0, 0.0, 0.0), back[0], back, turn, bank, work),
+        _out((0.0, 1.0, 0.0), back[1], back, turn, bank, work),
+        _out((0.0, 0.0, 1.0), back[2], back, turn, bank, work),
+    )
     return unit(found)
 
 
 @kernel
-def _pull(way: Vector, angles: Vector, work: Array) -> Vector:
+def _out(
+    axis: Vector, back_along: float, back: Vector, turn: Matrix, bank: float, work: Array
+) -> float:
+    """Return how far a turn about an axis leads out: the way first that is hardly pulled along."""
+    sign = -1.0 if back_along > 0.0 else 1.0
+    for way in (sign, -sign):
+        out = dot(_pull(scale(axis, way), turn, bank, work), back)
+        if out > PUSHED:
+            return way * out
+    return 0.0
+
+
+@kernel
+def _pull(way: Vector, turn: Matrix, bank: float, work: Array) -> Vector:
     """Return the turn by which a limit pulls back a tiny turn, over the size of that turn."""
-    probed = _turned(scale(way, PROBE), angles)
-    back = hpb_to_matrix(_pulled(probed, work))
-    return scale(rotation_vector(multiply(back, transposed(hpb_to_matrix(probed)))), 1.0 / PROBE)
+    probed = multiply(turn_by(scale(way, PROBE)), turn)
+    angles = matrix_to_hpb(probed, bank)
+    pulled = _pulled(angles, work)
+    if pulled == angles:
+        return 0.0, 0.0, 0.0
+    back = multiply(hpb_to_matrix(pulled), transposed(probed))
+    return scale(rotation_vector(back), 1.0 / PROBE)
 
 
 @kernel

@@ -7,12 +7,12 @@ side of the problem).
 from limbik.core.jit import kernel
 from limbik.core.kernels.rotation import Vector, norm, subtract
 from limbik.core.rotation import Array
+from limbik.plugins.finish.bars import accept, forget
 from limbik.plugins.finish.linkage import (
     ANGLES,
     TRIAL,
     WAY,
     Linkage,
-    copy_columns,
     end_at,
     find_motions,
     write,
@@ -49,6 +49,7 @@ def descend(
     Returns:
         The distance left [length]; never more than before.
     """
+    forget(scratch)
     for joint in range(chain.offsets.shape[0]):
         write((0.0, 0.0, 0.0), scratch, joint, WAY)
     error = subtract(goal, end_at(ANGLES, chain, scratch))
@@ -65,7 +66,7 @@ def descend(
         left = norm(tried)
         if left < distance:
             small = distance - left < least_gain * min(distance, 0.1 * chain.length)
-            copy_columns(TRIAL, ANGLES, scratch)
+            accept(scratch)
             error, distance = tried, left
             damping = max(damping * RELAX, LEAST_DAMPING)
             if small:

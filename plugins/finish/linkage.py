@@ -10,7 +10,7 @@ from typing import NamedTuple
 from limbik.core.jit import kernel
 from limbik.core.kernels.limit import PULL, do_task
 from limbik.core.kernels.own import ANGLES as ANGLES_OF_OWN
-from limbik.core.kernels.own import LIMIT, OTHER, STEP, TASK_WIDTH
+from limbik.core.kernels.own import LIMIT, MARGIN, OTHER, STEP, TASK_WIDTH
 from limbik.core.kernels.re_aim import FIXED
 from limbik.core.kernels.rotation import (
     Vector,
@@ -34,8 +34,12 @@ from limbik.core.rotation import Array
 ANGLES, TRIAL, BEST, HOME = 0, 3, 6, 9
 POSITION, AXES, WAY, ACTIVE = 12, 15, 24, 27
 OWN = 30  # what a joint's own limit works in, see `limbik.core.kernels.own`
-OWN_ANGLES, OWN_STEP = OWN + ANGLES_OF_OWN, OWN + STEP
-WIDTH = OWN + TASK_WIDTH
+OWN_ANGLES, OWN_STEP, OWN_MARGIN = OWN + ANGLES_OF_OWN, OWN + STEP, OWN + MARGIN
+OWN_END = OWN + TASK_WIDTH
+# Of a joint with a limit of its own: two gradients KNOWN at its ANGLES, two directions BARRED in
+# this step, and the ROOM its ANGLES have to the limit [rad], 0 where nobody knows.
+KNOWN, BARRED, ROOM = OWN_END, OWN_END + 6, OWN_END + 12
+WIDTH = OWN_END + 13
 
 
 class Linkage(NamedTuple):
@@ -157,7 +161,7 @@ def own_task(task: int, joint: int, angles: int, step: int, scratch: Array) -> N
     write(read(scratch, joint, angles), scratch, joint, OWN_ANGLES)
     write(read(scratch, joint, step), scratch, joint, OWN_STEP)
     write(read(scratch, joint, HOME), scratch, joint, OWN + OTHER)
-    do_task(task, scratch[joint, OWN:WIDTH])
+    do_task(task, scratch[joint, OWN:OWN_END])
 
 
 @kernel

@@ -6,14 +6,13 @@ from limbik.core.jit import kernel
 from limbik.core.kernels.limit import WAY as TASK_WAY
 from limbik.core.kernels.rotation import Vector, subtract, wrap_angle
 from limbik.core.rotation import Array
+from limbik.plugins.finish.bars import accept, forget
 from limbik.plugins.finish.linkage import (
     ANGLES,
     HOME,
     OWN_STEP,
-    TRIAL,
     WAY,
     Linkage,
-    copy_columns,
     end_at,
     find_motions,
     has_limit,
@@ -42,13 +41,14 @@ def settle(place: Vector, chain: Linkage, scratch: Array) -> None:
         chain: The chain.
         scratch: (n, WIDTH); its ANGLES are changed, inside the limits.
     """
+    forget(scratch)
     for _ in range(STEPS):
         end = end_at(ANGLES, chain, scratch)
         find_motions(end, chain, scratch)
         _find_way(chain, scratch)
         find_step(subtract(place, end), DAMPING, chain, scratch)
         most = take_step(LONGEST_STEP, chain, scratch)
-        copy_columns(TRIAL, ANGLES, scratch)
+        accept(scratch)
         if most < STILL:
             break
 

@@ -5,23 +5,21 @@ another pose). Axes at a limit are left out while the step would push them furth
 """
 
 from limbik.core.jit import kernel
-from limbik.core.kernels.limit import BAR, TURN_ON
+from limbik.core.kernels.limit import TURN_ON
 from limbik.core.kernels.rotation import (
     Vector,
     add,
     clamp,
     dot,
-    has_direction,
     scale,
     subtract,
 )
 from limbik.core.rotation import Array
+from limbik.plugins.finish.bars import bar_ways_out, unbar
 from limbik.plugins.finish.linkage import (
     ACTIVE,
     ANGLES,
-    AXES,
     OWN_ANGLES,
-    OWN_STEP,
     TRIAL,
     WAY,
     Linkage,
@@ -47,11 +45,13 @@ def find_step(error: Vector, damping: float, chain: Linkage, scratch: Array) -> 
     for joint in range(chain.offsets.shape[0]):
         for axis in range(3):
             scratch[joint, ACTIVE + axis] = 1.0 if turns(joint, axis, chain) else 0.0
+        if has_limit(joint, scratch):
+            unbar(joint, scratch)
     # Each pass takes an axis or a direction out, so there are no more passes than axes.
     for _ in range(3 * chain.offsets.shape[0]):
         weights = _weights(error, damping, chain, scratch)
         blocked = _write_step(weights, chain, scratch)
-        if not _bar_ways_out(chain, scratch) and not blocked:
+        if not bar_ways_out(scratch) and not blocked:
             break
 
 
@@ -128,33 +128,6 @@ def _solve(
     z = w / f
     y = (v - e * z) / d
     return (u - b * y - c * z) / a, y, z
-
-
-@kernel
-def _bar_ways_out(chain: Linkage, scratch: Array) -> bool:
-    """Let joints that the step would push out of their own limits slide; return whether any."""
-    found = False
-    for joint in range(chain.offsets.shape[0]):
-        if has_limit(joint, scratch) and scratch[joint, ACTIVE] != 0.0:
-            own_task(BAR, joint, ANGLES, TRIAL, scratch)
-            way = read(scratch, joint, OWN_STEP)
-            if has_direction(way):
-                _flatten(way, joint, scratch)
-                found = True
-    return found
-
-
-@kernel
-def _flatten(way: Vector, joint: int, scratch: Array) -> None:
-    """Take the part along a direction out of a joint's motions and its WAY: it slides on."""
-    along = (0.0, 0.0, 0.0)
-    for axis in range(3):
-        along = add(along, scale(motion(joint, axis, scratch), way[axis]))
-    for axis in range(3):
-        left = subtract(motion(joint, axis, scratch), scale(along, way[axis]))
-        write(left, scratch, joint, AXES + 3 * axis)
-    wanted = read(scratch, joint, WAY)
-    write(subtract(wanted, scale(way, dot(wanted, way))), scratch, joint, WAY)
 
 
 @kernel

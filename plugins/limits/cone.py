@@ -6,7 +6,7 @@ it by an ellipse and the twist by a range; `frozen` turns the cone to where it b
 """
 
 from collections.abc import Iterable
-from math import atan2, hypot, inf, pi, sqrt
+from math import atan2, cos, hypot, inf, pi, sin, sqrt
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -32,7 +32,9 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-12  # [rad]; what is outside by less is on the limit
 NARROW = 1e-9  # [rad]; a swing this small is none
 FULL_TURN = 2.0 * pi - 1e-9  # [rad]; a twist range this wide is no limit
-HALVINGS = 80  # of the interval in which the nearest point of the ellipse is sought
+TINY = 1e-16  # share of a number that is lost in its rounding
+BEHIND = -0.9  # cosine of a swing this wide
+ROUNDS = 60  # most steps to the nearest point of an ellipse, where five are common
 
 
 class Cone(NamedTuple):
@@ -84,8 +86,9 @@ def cone(angles: Array, params: Cone, margin: Array) -> None:
     off = max(abs(inner_x - x), abs(inner_y - y), abs(inner_bank - bank))
     if off <= ROUNDING:
         return
-    swung = turn_by((inner_x, inner_y, 0.0))
-    inner = multiply(swung, hpb_to_matrix((0.0, 0.0, inner_bank)))
+    c, s = cos(inner_bank), sin(inner_bank)
+    twisted = (c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)
+    inner = multiply(turn_by((inner_x, inner_y, 0.0)), twisted)
     angles[0], angles[1], angles[2] = matrix_to_hpb(inner, angles[2])
 
 
@@ -102,7 +105,12 @@ def _swing(turn: Matrix) -> tuple[float, float]:
 
 @kernel
 def _twist(turn: Matrix, x: float, y: float) -> float:
-    """Return the twist that is left of a turn without its swing [rad]."""
+    """Return the twist that is left of a turn without its swing [rad].
+
+    The swing cancels out of what the twist is read from, unless the bone points nearly behind.
+    """
+    if turn[2][2] > BEHIND:
+        return atan2(turn[0][1] - turn[1][0], turn[0][0] + turn[1][1])
     rest = multiply(transposed(turn_by((x, y, 0.0))), turn)
     return atan2(rest[0][1] - rest[1][0], rest[0][0] + rest[1][1])
 
@@ -151,7 +159,8 @@ def _rim(a: float, b: float, x: float, y: float) -> tuple[float, float]:
     """Return the point of an ellipse's rim nearest to a point, both in the first quadrant.
 
     The normal through the rim's point meets the given one; its parameter is the root of a falling
-    function, found by halving (Eberly, Distance from a Point to an Ellipse).
+    convex function (Eberly, Distance from a Point to an Ellipse), to which Newton's steps lead from
+    below without ever passing it.
 
     Args:
         a: The longer half axis, along x.
@@ -168,17 +177,14 @@ def _rim(a: float, b: float, x: float, y: float) -> tuple[float, float]:
         return 0.0, b
     ratio = (a / b) ** 2
     u, v = x / a, y / b
-    low, high = v, hypot(ratio * u, v)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
+    root = max(v, ratio * u - ratio + 1.0)  # either term alone is at most 1 at the root
+    for _ in range(ROUNDS):
+        along, across = root + ratio - 1.0, v / root
+        first, second = (ratio * u / along) ** 2, across * across
+        step = 0.5 * (first + second - 1.0) / (first / along + second / root)
+        if not step > TINY * root:
             break
-        value = (ratio * u / (middle + ratio - 1.0)) ** 2 + (v / middle) ** 2 - 1.0
-        if value > 0.0:
-            low = middle
-        else:
-            high = middle
-    root = 0.5 * (low + high)
+        root += step
     return ratio * x / (root + ratio - 1.0), y / root
 
 
