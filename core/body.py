@@ -19,7 +19,7 @@ from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.skeleton import WORLD, Limb, Skeleton
 from limbik.core.solution import Continuity, Solution
-from limbik.core.solveinput import checked
+from limbik.core.solveinput import checked, expected
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.solving import single_solver
@@ -116,6 +116,7 @@ class BodySolver:
             InputError: The scene binds a rest pose that cannot stay.
         """
         registry = registry or Registry()
+        expected(scene, BodyScene, "scene")
         chains = [
             BodyChain(
                 part.name,

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isfinite, pi, radians
+from math import pi, radians
 from typing import Any, Final
 
 import numpy as np
@@ -19,6 +19,7 @@ Limit = tuple[float, float]
 
 AXES: Final = ("heading", "pitch", "bank")
 MAX_JOINTS: Final = 256
+LARGEST: Final = 1e100  # squares of larger numbers overflow
 STRAIGHT: Final = 1e-6  # largest difference of unit vectors on one line
 SHORTEST: Final = 1e-9  # a bone this short has no direction
 
@@ -118,7 +119,7 @@ class Chain:
         base_position: Vector = (0.0, 0.0, 0.0),
         base_turn: Vector = (0.0, 0.0, 0.0),
     ) -> None:
-        joints = tuple(joints)
+        joints = _as_joints(joints)
         _check_count(joints)
         _check_vector(base_position, "base position")
         _check_vector(base_turn, "base rotation")
@@ -153,6 +154,13 @@ class Chain:
             array = np.ascontiguousarray(array)
             array.flags.writeable = False
             object.__setattr__(self, name, array)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Take over a copied or unpickled chain's state, whose arrays come writable."""
+        self.__dict__.update(state)
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.joints)
@@ -258,13 +266,39 @@ def vector(values: ArrayLike) -> Vector:
 
 def _radians(degrees: Any) -> Any:
     """Return angles in radians; what is none stays as it is, for the chain to refuse."""
-    return tuple(map(radians, degrees)) if _are_numbers(degrees) else degrees
+    fits = _are_numbers(degrees) and all(
+        not isinstance(v, int) or abs(v) < LARGEST for v in degrees
+    )
+    return tuple(map(radians, degrees)) if fits else degrees
 
 
 def _are_numbers(values: Any) -> bool:
+    if isinstance(values, np.ndarray) and values.ndim != 1:
+        return False
+    kinds = int | float | np.integer | np.floating
     return isinstance(values, Sequence | np.ndarray) and all(
-        isinstance(value, int | float | np.number) for value in values
+        isinstance(value, kinds) for value in values
     )
+
+
+def _are_small(values: Any) -> bool:
+    """Whether values are numbers, finite, and their squares too."""
+    return _are_numbers(values) and all(abs(value) < LARGEST for value in values)
+
+
+def _as_joints(joints: Any) -> tuple[Joint, ...]:
+    try:
+        found = tuple(joints)
+    except TypeError:
+        raise ChainError(f"joints: expected a list of Joint, found {joints!r:.60}") from None
+    for joint in found:
+        if not isinstance(joint, Joint):
+            raise ChainError(f"joints: expected a list of Joint, found {joint!r:.60} in it")
+        if not joint.name and isinstance(joint.name, str):
+            raise ChainError("every joint needs a name")
+        if not isinstance(joint.name, str):
+            raise ChainError(f"every joint needs a name, which is a text, not {joint.name!r:.60}")
+    return found
 
 
 def _check_count(joints: tuple[Joint, ...]) -> None:
@@ -278,14 +312,12 @@ def _check_count(joints: tuple[Joint, ...]) -> None:
 
 
 def _check_vector(vector: Vector, what: str, joint: str | None = None) -> None:
-    if not _are_numbers(vector) or len(vector) != 3 or not all(map(isfinite, vector)):
+    if not _are_small(vector) or len(vector) != 3:
         shown = list(vector) if isinstance(vector, tuple) else vector
-        raise ChainError(f"{what} must be three finite numbers (found {shown})", joint)
+        raise ChainError(f"{what} must be three finite numbers (found {shown!r:.200})", joint)
 
 
 def _check_joint(joint: Joint) -> None:
-    if not joint.name:
-        raise ChainError("every joint needs a name")
     for what in ("offset", "frozen", "rest"):
         _check_vector(getattr(joint, what), what, joint.name)
     _check_own_limit(joint)
@@ -302,11 +334,14 @@ def _check_own_limit(joint: Joint) -> None:
 
 def _check_limit(name: str, axis: str, limit: Limit) -> None:
     if not _are_numbers(limit) or len(limit) != 2:
-        raise ChainError(f"{axis} range must be two finite numbers (found {limit!r})", name)
+        raise ChainError(f"{axis} range must be two finite numbers (found {limit!r:.80})", name)
+    if not _are_small(limit):
+        found = ", ".join(
+            f"{v * 180 / pi:g}" if isinstance(v, float) else f"{v!r:.20}" for v in limit
+        )
+        raise ChainError(f"{axis} range must be two finite numbers (found [{found}])", name)
     low, high = limit
     shown = f"[{np.degrees(low):g}, {np.degrees(high):g}]"
-    if not (isfinite(low) and isfinite(high)):
-        raise ChainError(f"{axis} range must be two finite numbers (found {shown})", name)
     if low > high:
         raise ChainError(f"{axis} range {shown}: the minimum is above the maximum", name)
     rounding = 1e-12

@@ -11,6 +11,7 @@ from limbik.core.errors import InputError
 from limbik.core.reach import pull_into_reach
 from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
 from limbik.core.solution import Solution
+from limbik.core.solveinput import checked
 from limbik.core.solver import Solver
 
 Follows = Literal["own", "base", "end", "aim"]
@@ -40,16 +41,15 @@ class Controller:
 
     def __post_init__(self) -> None:
         for what in ("position", "turn"):
-            value = getattr(self, what)
-            if np.shape(value) != (3,) or not np.isfinite(value).all():
-                raise InputError(f"controller: {what} must be three finite numbers, not {value}")
-        if self.follows not in get_args(Follows):
+            value = checked(getattr(self, what), (3,), f"controller: {what}")
+            object.__setattr__(self, what, tuple(value.tolist()))
+        if not isinstance(self.follows, str) or self.follows not in get_args(Follows):
             words = ", ".join(get_args(Follows))
             raise InputError(f"controller: follows must be one of {words}, not {self.follows!r}")
 
     def moved(self, position: ArrayLike) -> "Controller":
         """Return the controller at another world position [length]."""
-        return replace(self, position=vector(position))
+        return replace(self, position=vector(checked(position, (3,), "controller: position")))
 
     def lead(
         self, solver: Solver, before: "Led | None" = None, fk_offsets: ArrayLike | None = None
@@ -71,7 +71,8 @@ class Controller:
             InputError: Chain and controller or offsets do not fit.
             PluginError: A strategy gave a result that is not a number.
         """
-        key = None if fk_offsets is None else np.array(fk_offsets, np.float64).tobytes()
+        shape = (len(solver.chain), 3)
+        key = None if fk_offsets is None else checked(fk_offsets, shape, "FK offsets").tobytes()
         if before is not None and self._rests(before, solver, key):
             return before
         chain = solver.chain

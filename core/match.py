@@ -6,7 +6,7 @@ its initial bend allows. From an IK pose: the FK offsets that make it.
 
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,9 @@ from limbik.core.motion import turn_between
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array, wrap
 from limbik.core.solution import Continuity, Solution
+from limbik.core.solveinput import checked, expected
 from limbik.core.solver import Solver
+from limbik.core.wording import found_words
 
 Mode = Literal["manual", "global"]
 
@@ -59,12 +61,11 @@ def match_ik(solver: Solver, angles: ArrayLike, mode: Mode = "manual") -> Match:
         mode: How the bend vector is expressed.
 
     Raises:
-        ValueError: The angles have another shape.
-        InputError: The angles are not finite.
+        InputError: The angles are not finite or have another shape, or there is no such mode.
     """
-    positions, rotations = forward_kinematics(solver.chain, angles)
-    if not np.isfinite(positions).all():
-        raise InputError("angles: every number must be finite")
+    _check_mode(mode)
+    pose = _pose(expected(solver, Solver, "solver").chain, angles)
+    positions, rotations = forward_kinematics(solver.chain, pose)
     root = solver.settings.bend_reference - 1
     goal, side = positions[-1], _bend_side(solver, positions, rotations)
     level = _expressed(solver.altered(twist=0.0), goal, side, mode, None)
@@ -96,8 +97,11 @@ def match_fk(chain: Chain, angles: ArrayLike) -> Array:
     Args:
         chain: The chain.
         angles: The pose, HPB, (n, 3) [rad].
+
+    Raises:
+        InputError: The angles are not finite or have another shape.
     """
-    return np.asarray(angles, np.float64) - np.clip(chain.rest, chain.low, chain.high)
+    return _pose(chain, angles) - np.clip(chain.rest, chain.low, chain.high)
 
 
 def convert_bend_vector(
@@ -110,10 +114,24 @@ def convert_bend_vector(
         goal: Where the change happens, world, (3,) [length].
         mode: `manual` or `global`.
         continuity: What the next solve will be given.
+
+    Raises:
+        InputError: The goal is not finite or has another shape, or there is no such mode.
     """
-    point = np.asarray(goal, np.float64)
+    _check_mode(mode)
+    point = checked(goal, (3,), "goal")
+    expected(solver, Solver, "solver")
     side = solver.altered(max_iterations=-1).solve(point, continuity=continuity).bend_vector
     return _expressed(solver, point, np.asarray(side), mode, continuity)
+
+
+def _check_mode(mode: object) -> None:
+    if not isinstance(mode, str) or mode not in get_args(Mode):
+        raise InputError(f"mode: must be {' or '.join(get_args(Mode))}, not {found_words(mode)}")
+
+
+def _pose(chain: Chain, angles: ArrayLike) -> Array:
+    return checked(angles, (len(expected(chain, Chain, "chain")), 3), "angles")
 
 
 def _without_limits(chain: Chain) -> Chain:

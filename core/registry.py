@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from importlib import import_module
 from threading import RLock
+from types import ModuleType
 from typing import Any
 
 from limbik.core.binding import Bound, split_choice, unknown_strategy
@@ -39,6 +40,8 @@ class Registry:
         self._blocked = {name.strip() for name in (*block, *listed)} - {""}
         self._roster = Roster()
         self._lock = RLock()
+        self._third_party = third_party
+        self._by_hand: list[tuple[Any, str]] = []
         self._complete = not third_party
         self._load_built_in()
 
@@ -53,6 +56,15 @@ class Registry:
                 self._roster.load(plugin, partial(import_module, module))
         for first in self._roster.broken:
             raise PluginError(first.cause, first.plugin.name, first.strategy, first.slot)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle how it was made, not what it found: another process looks for itself."""
+        given = [
+            (name, module.__name__ if isinstance(module, ModuleType) else None, module)
+            for module, name in self._by_hand
+        ]
+        by_hand = [(name, path, None if path else module) for name, path, module in given]
+        return _made_again, (self._third_party, sorted(self._blocked), by_hand)
 
     def _load_third_party(self) -> None:
         with self._lock:
@@ -79,6 +91,7 @@ class Registry:
             PluginError: Something in it does not work; what works stays.
         """
         with self._lock:
+            self._by_hand.append((module, name))
             before = len(self._roster.broken)
             self._roster.load(Plugin(name, "", origin=str(module)), lambda: module)
             for failure in self._roster.broken[before:]:
@@ -180,3 +193,13 @@ class Registry:
         """Everything that failed in plug-ins of other distributions."""
         self._load_third_party()
         return tuple(self._roster.broken)
+
+
+def _made_again(
+    third_party: bool, block: list[str], by_hand: list[tuple[str, str | None, Any]]
+) -> Registry:
+    """Make a registry as another one was made; modules come by their names."""
+    registry = Registry(third_party, block)
+    for name, path, module in by_hand:
+        registry.register(import_module(path) if path else module, name)
+    return registry

@@ -54,6 +54,7 @@ from limbik.core.slots import SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
 from limbik.core.validation import validation_faults
 from limbik.core.whole import OWN_SOLVERS, prepare
+from limbik.core.wording import found_words
 from limbik.core.yamlfile import Document, KeyPath, read_yaml, read_yaml_file
 from limbik.core.yamltext import MOST_BYTES
 
@@ -135,6 +136,8 @@ def open_scene(source: str | Path) -> tuple[Document, Path]:
     Raises:
         SceneError: It is no YAML, or not of the kind limbik reads.
     """
+    if not isinstance(source, str | Path):
+        raise SceneError(Fault("type", f"a scene is read by its path, not {found_words(source)}"))
     if str(source) == STDIN:
         return read_yaml(sys.stdin.buffer.read(MOST_BYTES + 1), "<stdin>"), Path()
     return read_yaml_file(source), Path(source).parent

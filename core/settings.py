@@ -6,7 +6,7 @@ Angles are in degrees, lengths in the chain's unit. The defaults are the documen
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 Axis = Literal["x+", "x-", "y+", "y-", "z+", "z-"]
 Choice = str | dict[str, Any]
@@ -24,6 +24,22 @@ class Model(BaseModel):
     """Strict, frozen, no unknown keys, no NaN."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def __init__(self, /, **values: Any) -> None:
+        """Check values a program gives.
+
+        Raises:
+            InputError: A value is refused, or a key is unknown.
+        """
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            from limbik.core.validation import model_error
+
+            raise model_error(error, type(self), values) from None
+
+    # What pydantic marks its own constructor with: models inside of models are made without it.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
 
 class Held(Model):
@@ -78,7 +94,7 @@ class Settings(Model):
     """Everything a solve can be told besides chain and goal.
 
     Raises:
-        pydantic.ValidationError: A value is out of its range or a key is unknown.
+        InputError: A value is out of its range or a key is unknown.
     """
 
     ik: Annotated[bool, Field(description="false: full FK, no solve (000 §6.1(1))")] = True
@@ -93,7 +109,9 @@ class Settings(Model):
     max_violations: Annotated[
         int,
         Field(
-            ge=0, description="rounds in a row past a limit before CCD drops a joint; 0 = no bound"
+            ge=0,
+            le=100_000,
+            description="rounds in a row past a limit before CCD drops a joint; 0 = no bound",
         ),
     ] = 0
     held: Held = Held()
@@ -180,7 +198,8 @@ class Settings(Model):
 
     @model_validator(mode="after")
     def _holding_needs_a_fixed_mode(self) -> "Settings":
-        mode = self.bend_vector["use"] if isinstance(self.bend_vector, dict) else self.bend_vector
+        given = self.bend_vector
+        mode = given.get("use") if isinstance(given, dict) else given
         if self.hold_bend_vector and mode == "auto":
             raise ValueError(
                 "hold_bend_vector goes with the modes manual and global, not with auto"

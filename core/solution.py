@@ -89,13 +89,13 @@ class Continuity:
         Raises:
             InputError: The angles are not finite, not of that shape, or have no such joint.
         """
-        pose = np.asarray(angles, np.float64)
-        if pose.ndim != 2 or pose.shape[1] != 3 or not np.isfinite(pose).all():
-            raise InputError(f"pose: expected finite angles (n, 3), found shape {pose.shape}")
-        if not 1 <= bend_reference < len(pose):
+        from limbik.core.solveinput import checked
+
+        pose = checked(angles, (None, 3), "pose")
+        if not isinstance(bend_reference, int) or not 1 <= bend_reference < len(pose):
             raise InputError(
                 f"bend_reference must be 1 to {len(pose) - 1} for a pose of {len(pose)} joints, "
-                f"not {bend_reference}"
+                f"not {bend_reference!r:.60}"
             )
         memory = np.zeros((len(pose) + 4, 3))
         memory[AIM_BASE] = pose[0]

@@ -1,17 +1,18 @@
 """What goes into a solve, checked, and the arrays it writes into."""
 
-from typing import NamedTuple, Self
+from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from limbik.core.chain import Chain
+from limbik.core.chain import LARGEST, Chain
 from limbik.core.errors import ChainError, InputError
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings, joint_tables
-from limbik.core.wording import near_match
+from limbik.core.wording import found_words, near_match
 
-LARGEST = 1e100  # squares of larger numbers overflow
+_NO_NUMBERS = "cSUMm"  # kinds numpy would turn into numbers: complex, texts, dates
+T = TypeVar("T")
 
 
 class Arrays(NamedTuple):
@@ -40,6 +41,29 @@ class Arrays(NamedTuple):
         )
 
 
+def expected(value: object, kind: type[T], what: str) -> T:
+    """Return a value that must be of a class.
+
+    Raises:
+        InputError: It is something else.
+    """
+    if not isinstance(value, kind):
+        raise InputError(f"{what}: expected a {kind.__name__}, found {found_words(value)}")
+    return value
+
+
+def numbers(values: ArrayLike) -> Array | None:
+    """Return values as a new contiguous float64 array, or None if they are no numbers."""
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind in _NO_NUMBERS:
+            return None
+        # A copy, always: compiled code is entered with writable, contiguous arrays only.
+        return np.array(given, np.float64, order="C")
+    except (TypeError, ValueError, OverflowError):
+        return None
+
+
 def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Array:
     """Return values as a contiguous float64 array, or say what is wrong with them.
 
@@ -51,11 +75,9 @@ def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Arra
     Raises:
         InputError: The shape is another, or a number is not finite.
     """
-    try:
-        # A copy, always: compiled code is entered with writable, contiguous arrays only.
-        array = np.array(values, np.float64, order="C")
-    except (TypeError, ValueError):
-        raise InputError(f"{what}: expected numbers of shape {_shown(shape)}") from None
+    array = numbers(values)
+    if array is None:
+        raise InputError(f"{what}: expected numbers of shape {_shown(shape)}")
     expects_rows = shape[0] is None
     if array.ndim != len(shape) or array.shape[expects_rows:] != shape[expects_rows:]:
         raise InputError(f"{what}: expected shape {_shown(shape)}, found {array.shape}")
@@ -68,9 +90,8 @@ def checked(values: ArrayLike, shape: tuple[int | None, ...], what: str) -> Arra
 
 def checked_turns(values: ArrayLike, shape: tuple[int | None, ...]) -> Array:
     """Return turns of goals; a row of NaNs stands for a goal without one."""
-    try:
-        rows = np.asarray(values, np.float64)
-    except (TypeError, ValueError):
+    rows = numbers(values)
+    if rows is None or rows.ndim != len(shape):
         return checked(values, shape, "goal turns")
     absent = np.isnan(rows).all(axis=-1, keepdims=True)
     found = checked(np.where(absent, 0.0, rows), shape, "goal turns")
@@ -88,7 +109,9 @@ def with_turns(goals: Array, turns: ArrayLike) -> Array:
 
 def checked_memory(values: Array, joints: int) -> Array:
     """Return a copy of a continuity's numbers for a chain of so many joints."""
-    memory = np.array(values, np.float64, order="C")
+    memory = numbers(values)
+    if memory is None or memory.ndim != 2:
+        raise InputError("continuity: expected numbers of shape (n + 4, 3) for n joints")
     if memory.shape != (joints + 4, 3):
         message = f"it is of a chain of {len(memory) - 4} joints, this one has {joints}"
         raise InputError(f"continuity: {message}")

@@ -29,6 +29,7 @@ from limbik.core.solveinput import (
     checked,
     checked_memory,
     checked_turns,
+    expected,
     with_turns,
 )
 
@@ -60,18 +61,39 @@ class Solver:
         registry: Registry | None = None,
         **options: Any,
     ) -> None:
-        given = _joined(settings or Settings(), options)
+        expected(chain, Chain, "chain")
+        own = Settings() if settings is None else expected(settings, Settings, "settings")
+        given = _joined(own, options)
         self._check_fit(chain, given)
         self.chain = chain
         self.settings = given
         self.registry = Registry() if registry is None else registry
-        self.strategies: dict[str, Bound] = {
-            slot: self.registry.bind(slot, getattr(given, slot)) for slot in self._slots
-        }
-        self.limits = bound_limits(chain, given, self.registry)
+        self._look_up()
         self._fixed: tuple[Any, ...] = self._flatten()
         self._none = np.zeros((len(chain), 3))
         self._fresh = np.zeros((len(chain) + 4, 3))
+
+    def _look_up(self) -> None:
+        """Find the strategies that settings and joints name."""
+        self.strategies: dict[str, Bound] = {
+            slot: self.registry.bind(slot, getattr(self.settings, slot)) for slot in self._slots
+        }
+        self.limits = bound_limits(self.chain, self.settings, self.registry)
+
+    def __copy__(self) -> Self:
+        """Share everything, what is compiled too."""
+        found = object.__new__(type(self))
+        found.__dict__.update(self.__dict__)
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out what is an address, or compiled, in this process only."""
+        return {name: value for name, value in self.__dict__.items() if name not in _OWN_PROCESS}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Look the strategies up again where this is unpickled or deeply copied."""
+        self.__dict__.update(state)
+        self._look_up()
 
     def altered(self, **options: Any) -> Self:
         """Return a solver of the same kind with some settings changed."""
@@ -272,7 +294,7 @@ class Solver:
         """Solve rows, (m, k), that have nothing to do with each other."""
         fk = self._offsets(fk_offsets)
         out = Arrays.empty(len(rows), len(self.chain), 0, self._columns)
-        if threads is not None and threads < 1:
+        if threads is not None and expected(threads, int, "threads") < 1:
             raise InputError(f"threads: expected at least 1, found {threads}")
         workers = min(threads or os.cpu_count() or 1, max(len(rows) // THREAD_SHARE, 1))
         bounds = np.linspace(0, len(rows), workers + 1).astype(int).tolist()
@@ -352,7 +374,8 @@ class Solver:
         """Return a copy of a continuity's numbers to work on; the kernels trust its shape."""
         if continuity is None:
             return self._fresh.copy()
-        return checked_memory(continuity.memory, len(self.chain))
+        given = expected(continuity, Continuity, "continuity")
+        return checked_memory(given.memory, len(self.chain))
 
     def _offsets(self, fk_offsets: ArrayLike | None) -> Array:
         if fk_offsets is None:
@@ -389,5 +412,6 @@ def _joined(settings: Settings, options: dict[str, Any]) -> Settings:
     return read_model(Settings, {**settings.model_dump(exclude_unset=True), **options})
 
 
+_OWN_PROCESS = ("_kernel", "_plugs", "strategies", "limits")
 _LATE_STAGES = ("finish", "choice")
 _STATUS = {int(status): status for status in Status}

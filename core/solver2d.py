@@ -66,8 +66,9 @@ class Solver2D(Solver):
         pole: Pole | Sequence[float] | Array,
         **options: Any,
     ) -> None:
+        place = checked(pole.position if isinstance(pole, Pole) else pole, (3,), "pole")
         if not isinstance(pole, Pole):
-            pole = Pole(position=vector(checked(pole, (3,), "pole")))
+            pole = Pole(position=vector(place))
         self.pole = pole
         super().__init__(chain, settings, registry, **options)
 

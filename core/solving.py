@@ -7,6 +7,7 @@ from limbik.core.posegoals import WholeSolver, solve_turned
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene, require_goals
 from limbik.core.solution import Continuity, Solution
+from limbik.core.solveinput import expected
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.whole import prepare
@@ -29,7 +30,7 @@ def solve_scene(
         PluginError: A strategy failed.
         SceneError: The scene has no goals, only a trajectory.
     """
-    require_goals(scene)
+    require_goals(expected(scene, Scene, "scene"))
     if scene.solver is not None or not trace:
         found = solve_goals(scene, registry)
         return [found.single(row) for row in range(len(scene.goals))]

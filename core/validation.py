@@ -45,9 +45,16 @@ def read_model(model: type[M], values: Mapping[str, Any]) -> M:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        document = Document("", dict(values), {}, {})
-        faults = validation_faults(error, document, model)
-        raise InputError(replace(fault, line=0, column=0) for fault in faults) from None
+        raise model_error(error, model, values) from None
+
+
+def model_error(
+    error: ValidationError, model: type[BaseModel], values: Mapping[str, Any]
+) -> InputError:
+    """Put the refusal of values a program gave into words."""
+    document = Document("", dict(values), {}, {})
+    faults = validation_faults(error, document, model)
+    return InputError(replace(fault, line=0, column=0) for fault in faults)
 
 
 def validation_faults(

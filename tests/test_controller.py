@@ -141,11 +141,11 @@ def test_in_full_fk_the_controller_is_held_on_the_end(ik: bool, held: bool) -> N
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"position": (0.0, 0.0)}, "controller: position must be three finite numbers"),
-        ({"position": (0.0, 0.0, np.inf)}, "controller: position must be three finite numbers"),
+        ({"position": (0.0, 0.0)}, "controller: position"),
+        ({"position": (0.0, 0.0, np.inf)}, "controller: position"),
         (
             {"position": (0.0, 0.0, 1.0), "turn": (0.0, np.nan, 0.0)},
-            "controller: turn must be three finite numbers",
+            "controller: turn",
         ),
         (
             {"position": (0.0, 0.0, 1.0), "follows": "pole"},

@@ -12,11 +12,11 @@ from limbik.plugins.output.failures import reported
 def trajectory(
     scene: SceneFile,
     dt: Annotated[
-        float | None, typer.Option(help="Time between samples [s]; absent = the scene's.")
+        float | None, typer.Option(help="Time between samples, in seconds; absent = the scene's.")
     ] = None,
     as_json: AsJson = False,
     csv: Annotated[Path | None, typer.Option(help="Write poses and angles to a CSV file.")] = None,
-    npz: Annotated[Path | None, typer.Option(help="Write arrays for numpy [rad].")] = None,
+    npz: Annotated[Path | None, typer.Option(help="Write arrays for numpy, in radians.")] = None,
     tum: Annotated[Path | None, typer.Option(help="Write TUM poses.")] = None,
     right_handed: Annotated[
         bool, typer.Option("--right-handed", help="TUM poses in the right-handed Z-up world.")

@@ -17,7 +17,10 @@ def runs_in(folder: Path) -> list[dict[str, Any]]:
         InputError: There is no such folder.
     """
     if not folder.is_dir():
-        raise InputError(Fault("unreadable", "there is no such folder", file=str(folder)))
+        hint = "`limbik experiment run` makes the folder of a run"
+        raise InputError(
+            Fault("unreadable", "there is no such folder", file=str(folder), hint=hint)
+        )
     places = [folder] if (folder / MANIFEST).exists() else sorted(folder.iterdir())
     found = []
     for place in places:

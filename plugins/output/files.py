@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from errno import EISDIR
 from pathlib import Path
 
 from limbik.core.errors import EnvironmentProblem, Fault, InputError
@@ -13,6 +14,8 @@ UNFINISHED = ".limbik-"
 def write_whole(path: Path, content: str | bytes, *, durable: bool = False) -> None:
     """Write a file so that nobody ever sees half of it: a new file takes its place at once.
 
+    A link stays a link; what is no file, such as `/dev/stdout` or a pipe, is written into.
+
     Args:
         path: The file; it is replaced if it exists.
         content: Text, written as UTF-8, or bytes.
@@ -22,8 +25,14 @@ def write_whole(path: Path, content: str | bytes, *, durable: bool = False) -> N
         EnvironmentProblem: The folder is missing, full or not writable.
     """
     payload = content.encode() if isinstance(content, str) else content
-    beside = None
+    beside, given = None, path
     try:
+        path = path.resolve()
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, "it is a folder, a file's name is needed")
+        if path.exists() and not path.is_file():
+            path.write_bytes(payload)
+            return
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=UNFINISHED, delete=False) as part:
             beside = Path(part.name)
             part.write(payload)
@@ -33,7 +42,7 @@ def write_whole(path: Path, content: str | bytes, *, durable: bool = False) -> N
         beside.chmod(0o666 & ~_mask())
         beside.replace(path)
     except OSError as error:
-        raise EnvironmentProblem(f"cannot write {path}: {error.strerror or error}") from error
+        raise EnvironmentProblem(f"cannot write {given}: {error.strerror or error}") from error
     finally:
         if beside is not None:
             beside.unlink(missing_ok=True)

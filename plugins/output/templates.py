@@ -41,7 +41,7 @@ def write_template(name: Path, template: str) -> Path:
         The file written.
 
     Raises:
-        InputError: There is no such template, or the file exists already.
+        InputError: There is no such template, the name names no file, or the file exists already.
         EnvironmentProblem: The file cannot be written.
     """
     from importlib.resources import files
@@ -53,6 +53,8 @@ def write_template(name: Path, template: str) -> Path:
         message = f"no template is called '{template}'; known: {', '.join(TEMPLATES)}"
         hint = near_match(template, list(TEMPLATES))
         raise InputError(Fault("choice", message, "--template", hint=hint))
+    if not name.name:
+        raise InputError(Fault("choice", f"a file's name is needed, not '{name}'", "name"))
     path = name if name.suffix in (".yaml", ".yml") else name.with_name(f"{name.name}.yaml")
     configs = files("limbik").joinpath("configs")
     text = configs.joinpath(f"{template}.yaml").read_text(encoding="utf-8")

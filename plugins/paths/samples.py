@@ -81,10 +81,9 @@ def sample_times(duration: float, dt: float, stretch: bool) -> tuple[Array, Arra
     Raises:
         InputError: dt is not above 0, or gives too many samples.
     """
-    if not dt > 0.0 or duration / dt > MOST_SAMPLES:
-        message = (
-            f"the time between samples must be at least {duration / MOST_SAMPLES:.3g} s, not {dt:g}"
-        )
+    if not 0.0 < dt < np.inf or duration / dt > MOST_SAMPLES:
+        least = f"{duration / MOST_SAMPLES:.3g} s"
+        message = f"the time between samples must be finite and at least {least}, not {dt:g}"
         raise InputError(Fault("samples", message, key="dt"))
     steps = duration / dt
     near = abs(steps - round(steps)) <= 1e-9 * max(steps, 1.0)

@@ -21,21 +21,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from limbik.core.chain import Chain
+from limbik.core.chain import LARGEST, Chain
 from limbik.core.errors import ChainError, Fault, InputError
 from limbik.core.hooks import hookimpl
 from limbik.core.posegoals import PoseBatch, PoseSolution
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 from limbik.core.solution import Status
-from limbik.core.solveinput import checked
+from limbik.core.solveinput import checked, expected
 from limbik.core.strategy import Degrees, Strategy
+from limbik.core.wording import found_words
 from limbik.plugins.solvers.refine.hinges import read_hinges, read_joints, read_span
 
 NAME = "refine"
 LEAST_HINGES = 6
 PRECISION = 1e-9  # share of the size, and angle [rad], at which a descent stops
 SIZE = 0.5  # share of the chain's length that counts as much as a radian
+MOST = 2**31  # steps or starts
 SQUARE = 1e-6  # largest error of RᵀR that is taken for rounding of the input
 
 
@@ -80,7 +82,8 @@ class PoseSolver(PoseBatch):
         steps: int = 60,
         starts: int = 100,
     ) -> None:
-        self.chain, self.tolerance, self.angle = chain, tolerance, angle
+        self.chain = expected(chain, Chain, "chain")
+        self.tolerance, self.angle = tolerance, angle
         self.weight, self.steps, self.starts = weight, steps, starts
         _check(self)
         self._hinges, self._joints = read_hinges(chain), read_joints(chain)
@@ -201,15 +204,18 @@ class PoseSolver(PoseBatch):
 
 def _check(solver: PoseSolver) -> None:
     """Refuse what cannot be solved with; scenes are checked before."""
-    for name, fits, right in (
-        ("tolerance", 0.0 < solver.tolerance < np.inf, "above 0"),
-        ("angle", 0.0 < solver.angle <= np.pi, "above 0, at most π"),
-        ("weight", 0.0 <= solver.weight <= 1.0, "0 to 1"),
-        ("steps", solver.steps >= 1, "1 or more"),
-        ("starts", solver.starts >= 0, "0 or more"),
+    numbers, counts = (int, float, np.integer, np.floating), (int, np.integer)
+    least = 5e-324  # the smallest number above 0
+    for name, kinds, low, high, right in (
+        ("tolerance", numbers, least, LARGEST, "a number above 0"),
+        ("angle", numbers, least, np.pi, "a number above 0, at most π"),
+        ("weight", numbers, 0.0, 1.0, "a number from 0 to 1"),
+        ("steps", counts, 1, MOST, "a whole number, 1 or more"),
+        ("starts", counts, 0, MOST, "a whole number, 0 or more"),
     ):
-        if not fits:
-            message = f"must be {right}, not {getattr(solver, name)}"
+        value = getattr(solver, name)
+        if not isinstance(value, kinds) or not low <= value <= high:
+            message = f"must be {right}, not {found_words(value)}"
             raise InputError(Fault("range", message, name))
 
 
