@@ -12,14 +12,12 @@ from limbik.core.formats import Bake, BodyBake, Motion
 from limbik.core.frames import mirror_hpb
 from limbik.core.mirror import mirrored_solution, side_swapped
 from limbik.core.motion import motion_metrics
-from limbik.core.posegoals import solve_turned
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene, require_goals
 from limbik.core.skeleton import Limb, Skeleton
 from limbik.core.solution import OF_ALL, Solution
-from limbik.core.solving import scene_solver, solve_part
-from limbik.core.whole import prepare
+from limbik.core.solving import scene_solver, solve_goals, solve_part
 
 BLOCK: Final = 500  # goals solved between two reports of progress
 FRAME_TIME: Final = 1.0 / 30.0
@@ -48,11 +46,9 @@ def bake_scene(
     """
     require_goals(scene)
     if scene.solver is not None:
-        batch = prepare(scene.solver, scene.chain, scene.settings)
-        parts = [solve_turned(batch, scene.goals, scene.goal_turns, scene.follow)]
+        solution = solve_goals(scene)
     else:
-        parts = _blocks(scene, registry, progress)
-    solution = _joined(parts)
+        solution = _joined(_blocks(scene, registry, progress))
     if mirrored:
         solution = mirrored_solution(solution)
     seconds = frame_time or (scene.body and scene.body.frame_time) or FRAME_TIME

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from limbik.core.errors import InputError
 from limbik.core.flatten2d import Planar
-from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
 
@@ -39,7 +38,7 @@ def bound(solver: "Solver2D", goal: ArrayLike | None = None) -> "Solver2D":
             is outside the planar limits.
     """
     chain = solver.chain
-    positions, rotations = forward_kinematics(chain, chain.rest)
+    positions, rotations = chain.rest_pose
     end = positions[-1] if goal is None else np.asarray(goal, np.float64)
     gap = float(np.linalg.norm(end - positions[-1]))
     if not gap <= solver.settings.tolerance:

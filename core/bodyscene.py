@@ -14,9 +14,10 @@ from pydantic import ValidationError
 from limbik.core.bodymodel import BodyModel, PartModel, SkeletonJointModel
 from limbik.core.bodyorder import order_faults
 from limbik.core.chain import MAX_JOINTS
+from limbik.core.chainfile import STANDS_FOR_GOALS, read_file
 from limbik.core.choices import checkable, strategy_faults
 from limbik.core.errors import ChainError, Fault, InputError, SceneError, shortlist
-from limbik.core.formats import SceneInput, SkeletonInput
+from limbik.core.formats import SceneInput
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene, build_scene, joint_of, open_scene, scene_from
@@ -24,10 +25,9 @@ from limbik.core.scenegoals import twice
 from limbik.core.skeleton import WORLD, JointSkeleton, Limb, Skeleton
 from limbik.core.validation import validation_faults
 from limbik.core.wording import near_match
-from limbik.core.yamlfile import Document, KeyPath
+from limbik.core.yamlfile import Document
 
 _STANDS_FOR_SKELETON = {"joints": [{"name": "base"}]}
-_STANDS_FOR_GOALS = [{"position": [0.0, 0.0, 0.0]}]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -128,8 +128,8 @@ def body_from(document: Document, folder: Path, registry: Registry | None = None
         faults += validation_faults(error, document, BodyModel)
     skeleton = None
     if chosen is not None and chosen.skeleton is not None:
-        place: KeyPath = ("skeleton",)
-        skeleton, found = _read(chosen.skeleton, chosen.name, document.under(place), folder)
+        place, reader = document.under(("skeleton",)), chosen.skeleton
+        skeleton, found = read_file(chosen.name, reader.model, reader.read, place, folder)
         faults += found
     elif model is not None:
         skeleton, found = _skeleton(model.skeleton.joints, document)
@@ -158,7 +158,7 @@ def _standing_in(content: Any, chosen: SceneInput | None) -> Any:
     if chosen is not None:
         replaced["skeleton"] = _STANDS_FOR_SKELETON
     if isinstance(content.get("chains"), list):
-        own_goals = {} if chosen is None or not chosen.has_goals else {"goals": _STANDS_FOR_GOALS}
+        own_goals = {} if chosen is None or not chosen.has_goals else {"goals": STANDS_FOR_GOALS}
         replaced["chains"] = [
             {**own_goals, **checkable(part)} if isinstance(part, dict) else part
             for part in content["chains"]
@@ -166,29 +166,9 @@ def _standing_in(content: Any, chosen: SceneInput | None) -> Any:
     return replaced
 
 
-def _read(
-    chosen: SkeletonInput, name: str, document: Document, folder: Path
-) -> tuple[Skeleton | None, list[Fault]]:
-    """Read a skeleton from its file; the document is that of the `skeleton` mapping."""
-    try:
-        return chosen.read(chosen.model.model_validate(document.content), folder), []
-    except ValidationError as error:
-        return None, validation_faults(error, document, chosen.model)
-    except InputError as error:
-        return None, [_placed(fault, document, name) for fault in error.faults]
-
-
-def _placed(fault: Fault, document: Document, key: str) -> Fault:
-    """Point a fault that has no place in another file at the key of the scene it is about."""
-    if fault.line:
-        return fault
-    message = f"{fault.file}: {fault.message}" if fault.file else fault.message
-    return document.fault(fault.code, message, (fault.key or key,), hint=fault.hint)
-
-
 def _skeleton(
     models: Sequence[SkeletonJointModel], document: Document
-) -> tuple[Skeleton | None, list[Fault]]:
+) -> tuple[Skeleton | None, tuple[Fault, ...]]:
     """Make the skeleton of joints that are written out."""
     place = ("skeleton", "joints")
     names = [model.name for model in models]
@@ -211,11 +191,11 @@ def _skeleton(
         path = (*place, index, "parent")
         faults.append(document.fault("parent", message, path, hint=hint))
     if faults:
-        return None, faults
+        return None, tuple(faults)
     try:
-        return JointSkeleton.of([joint_of(model) for model in models], parents), []
+        return JointSkeleton.of([joint_of(model) for model in models], parents), ()
     except ChainError as error:
-        return None, [document.fault(f.code, f.message, place) for f in error.faults]
+        return None, tuple(document.placed(fault, place) for fault in error.faults)
 
 
 def _body(
@@ -233,13 +213,12 @@ def _body(
         try:
             parts.append(_part(part, skeleton, inner, folder, registry))
         except InputError as error:
-            faults += [_placed(fault, inner, "end") for fault in error.faults]
+            faults += [inner.placed(fault, (fault.key or "end",)) for fault in error.faults]
     if not faults:
         order = order_faults(skeleton, [(p.name, p.limb, p.frame) for p in parts])
         for index, fault in order:
             path = (fault.key,) if fault.key in documents[index].content else ()
-            message = (fault.code, fault.message, path)
-            faults.append(documents[index].fault(*message, hint=fault.hint))
+            faults.append(documents[index].placed(fault, path))
         faults += _count_faults(parts, len(skeleton.motion.turns))
     if faults:
         raise SceneError(shortlist(faults))
@@ -247,10 +226,9 @@ def _body(
     count = max(frames, *(len(part.scene.goals) for part in parts))
     fullest = next((p.scene.goal_names for p in parts if len(p.scene.goals) == count), None)
     names = fullest or tuple(str(k) for k in range(1, count + 1))
-    title = Path(document.name).stem.strip("<>")
     moving = skeleton.motion.frame_time if frames > 1 else None
     parts = [replace(part, scene=_spread(part.scene, count)) for part in parts]
-    return BodyScene(title, skeleton, tuple(parts), names, document, moving)
+    return BodyScene(document.title, skeleton, tuple(parts), names, document, moving)
 
 
 def _part(
@@ -260,8 +238,7 @@ def _part(
     try:
         limb = skeleton.limb(model.base, model.end)
     except ChainError as error:
-        found = [document.fault(f.code, f.message, ("end",), hint=f.hint) for f in error.faults]
-        raise SceneError(found) from error
+        raise SceneError(document.placed(fault, ("end",)) for fault in error.faults) from error
     if frame != WORLD:
         limb = skeleton.seen_from(frame, limb)
     scene = build_scene(model.name, model, document, folder, registry, limb)

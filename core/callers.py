@@ -7,12 +7,10 @@ to write is filled with NaN, which the solve finds and reports.
 
 from math import nan
 
-import numpy as np
-from numpy.typing import NDArray
-
 from limbik.core.compiler import invoker
 from limbik.core.jit import entry
 from limbik.core.kernels.own import ANGLES, STEP
+from limbik.core.rotation import Array
 from limbik.core.slots import (
     BANK_SUPPRESSION,
     BEND_VECTOR,
@@ -22,8 +20,6 @@ from limbik.core.slots import (
     LIMIT_TASK,
     ROOT_CONTROL,
 )
-
-Array = NDArray[np.float64]
 
 _initial_bend = invoker(INITIAL_BEND)
 _bend_vector = invoker(BEND_VECTOR)

@@ -8,6 +8,7 @@ from math import isfinite, pi, radians
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from limbik.core.errors import ChainError
 from limbik.core.kernels.rotation import matrix_to_hpb
@@ -18,9 +19,7 @@ Limit = tuple[float, float]
 
 AXES: Final = ("heading", "pitch", "bank")
 MAX_JOINTS: Final = 256
-STRAIGHT: Final = (
-    1e-6  # largest difference of unit vectors on one line (DECISIONS, "zero tolerance")
-)
+STRAIGHT: Final = 1e-6  # largest difference of unit vectors on one line
 SHORTEST: Final = 1e-9  # a bone this short has no direction
 
 
@@ -163,6 +162,17 @@ class Chain:
         """Sum of the bone lengths [length]."""
         return float(self.lengths.sum())
 
+    @property
+    def axis_names(self) -> list[str]:
+        """Names of all axes, joint by joint: `elbow heading`, `elbow pitch`, `elbow bank`."""
+        return [f"{name} {axis}" for name in self.names for axis in AXES]
+
+    @property
+    def moving_axes(self) -> list[tuple[int, int]]:
+        """Joint and axis of all that can turn; the end's own move nothing and are left out."""
+        spans = (self.high - self.low)[:-1]
+        return [(joint, axis) for joint, axis in np.argwhere(spans > 0.0).tolist()]
+
     @cached_property
     def rest_pose(self) -> tuple[Array, Array]:
         """World positions (n, 3) [length] and rotations (n, 3, 3) of the joints at rest."""
@@ -238,6 +248,12 @@ class Chain:
         ]
         x, y, z = self.base_position
         return Chain(joints, (-x, y, z), turn(self.base_turn))
+
+
+def vector(values: ArrayLike) -> Vector:
+    """Return three numbers as a vector of a joint or a chain."""
+    x, y, z = np.asarray(values, np.float64).tolist()
+    return x, y, z
 
 
 def _radians(degrees: Any) -> Any:

@@ -1,19 +1,23 @@
-"""A scene's chain out of a file: find the input that reads it, and keep its faults in place."""
+"""A scene's chain or skeleton out of a file: what reads it, and its faults kept in place."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from limbik.core.errors import ChainError, Fault, InputError, PluginError
-from limbik.core.formats import Body, SceneInput
+from limbik.core.formats import Body
 from limbik.core.registry import Registry
+from limbik.core.settings import Model
 from limbik.core.validation import validation_faults
-from limbik.core.yamlfile import Document, KeyPath
+from limbik.core.yamlfile import Document
 
+Read = TypeVar("Read")
+
+STANDS_FOR_GOALS = [{"position": [0.0, 0.0, 0.0]}]
 _STANDS_FOR_CHAIN = {"joints": [{"name": "base"}, {"name": "end"}]}
-_STANDS_FOR_GOALS = [{"position": [0.0, 0.0, 0.0]}]
 
 
 @dataclass(frozen=True)
@@ -50,35 +54,45 @@ def read_source(document: Document, folder: Path, registry: Registry | None) -> 
     if found is None:
         return Source(content)
     replaced = {**content, "chain": _STANDS_FOR_CHAIN}
-    body, faults = _read(found, chain, document, folder)
+    place = document.under(("chain",))
+    body, faults = read_file(found.name, found.model, found.read, place, folder)
     if found.has_goals and "goals" not in content and (body is None or body.goals is not None):
-        replaced["goals"] = _STANDS_FOR_GOALS
+        replaced["goals"] = STANDS_FOR_GOALS
     return Source(replaced, body, faults)
 
 
-def _read(
-    found: SceneInput, chain: dict[str, Any], document: Document, folder: Path
-) -> tuple[Body | None, tuple[Fault, ...]]:
-    place: KeyPath = ("chain",)
+def read_file(
+    name: str,
+    model: type[Model],
+    read: Callable[[Any, Path], Read],
+    document: Document,
+    folder: Path,
+) -> tuple[Read | None, tuple[Fault, ...]]:
+    """Let a scene input read the file a mapping of a scene names.
+
+    Args:
+        name: Of the input, and of the mapping's key for the file.
+        model: What the mapping may hold.
+        read: Makes a body or a skeleton of it.
+        document: The mapping.
+        folder: Folder that relative paths start from.
+
+    Returns:
+        What was read and what is wrong with it; the former is None if anything is.
+
+    Raises:
+        PluginError: The input failed.
+    """
     try:
-        return found.read(found.model.model_validate(chain), folder), ()
+        return read(model.model_validate(document.content), folder), ()
     except ValidationError as error:
-        return None, tuple(validation_faults(error, document, found.model, place))
+        return None, tuple(validation_faults(error, document, model))
     except ChainError as error:
-        return None, tuple(
-            document.fault(f.code, f.message, place, hint=f.hint) for f in error.faults
-        )
+        return None, tuple(document.placed(fault, ()) for fault in error.faults)
     except InputError as error:
-        return None, tuple(_placed(fault, found, document) for fault in error.faults)
+        keys = [f.key if f.key in model.model_fields else name for f in error.faults]
+        pairs = zip(error.faults, keys, strict=True)
+        return None, tuple(document.placed(fault, (key,)) for fault, key in pairs)
     except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
-        cause = f"reading {chain[found.name]} failed: {type(error).__name__}: {error}"
-        raise PluginError(cause, found.name, found.name, "scene_input") from error
-
-
-def _placed(fault: Fault, found: SceneInput, document: Document) -> Fault:
-    """Point a fault that has no place in the file read at its key in the scene."""
-    if fault.line:
-        return fault
-    key = fault.key if fault.key in found.model.model_fields else found.name
-    message = f"{fault.file}: {fault.message}" if fault.file else fault.message
-    return document.fault(fault.code, message, ("chain", key), hint=fault.hint)
+        cause = f"reading {document.content[name]} failed: {type(error).__name__}: {error}"
+        raise PluginError(cause, name, name, "scene_input") from error

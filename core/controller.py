@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from limbik.core.chain import SHORTEST, Vector
+from limbik.core.chain import SHORTEST, Vector, vector
 from limbik.core.errors import InputError
 from limbik.core.reach import pull_into_reach
 from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
@@ -49,7 +49,7 @@ class Controller:
 
     def moved(self, position: ArrayLike) -> "Controller":
         """Return the controller at another world position [length]."""
-        return replace(self, position=_triple(position))
+        return replace(self, position=vector(position))
 
     def lead(
         self, solver: Solver, before: "Led | None" = None, fk_offsets: ArrayLike | None = None
@@ -82,7 +82,7 @@ class Controller:
         held = self.hold_on_end and not solver.settings.ik
         place = solution.positions[-1] if held else solution.goal
         turn = self._turn(solution, place)
-        stands = replace(self, position=_triple(place), turn=turn)
+        stands = replace(self, position=vector(place), turn=turn)
         return Led(stands, self, solution, solver, key)
 
     def _rests(self, before: "Led", solver: Solver, key: bytes | None) -> bool:
@@ -93,14 +93,14 @@ class Controller:
     def _turn(self, solution: Solution, place: Array) -> Vector:
         """Return the orientation after a solve, HPB [rad]."""
         if self.follows == "base":
-            return _triple(matrix_to_hpb(solution.rotations[0]))
+            return vector(matrix_to_hpb(solution.rotations[0]))
         if self.follows == "end":
-            return _triple(matrix_to_hpb(solution.rotations[-1]))
+            return vector(matrix_to_hpb(solution.rotations[-1]))
         away = place - solution.positions[0]
         if self.follows == "own" or not np.linalg.norm(away) > SHORTEST:
             return self.turn
         heading = -np.arctan2(away[0], away[2])
-        return _triple((heading, np.arctan2(away[1], np.hypot(away[0], away[2])), 0.0))
+        return vector((heading, np.arctan2(away[1], np.hypot(away[0], away[2])), 0.0))
 
     @property
     def rotation(self) -> Array:
@@ -125,8 +125,3 @@ class Led:
     solution: Solution
     solver: Solver
     offsets: bytes | None
-
-
-def _triple(values: ArrayLike) -> Vector:
-    x, y, z = np.asarray(values, np.float64).tolist()
-    return x, y, z

@@ -170,9 +170,13 @@ def key_text(path: Sequence[str | int]) -> str:
         elif re.fullmatch(r"[\w-]{1,60}", part):
             text += f".{part}" if text else part
         else:
-            shown = part if len(part) <= 40 else f"{part[:37]}..."
-            text += f"[{shown!r}]"
+            text += f"[{clipped(part)!r}]"
     return text
+
+
+def clipped(text: str, most: int = 40) -> str:
+    """Return a text for a message, its end left out if it has more characters than `most`."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def shortlist(faults: Iterable[Fault]) -> list[Fault]:

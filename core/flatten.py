@@ -18,25 +18,27 @@ from limbik.core.kernels.own import COMPLIANCE
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
-from limbik.core.slots import MAX_PARAMS, PASSED_OVER
+from limbik.core.slots import MAX_PARAMS, OPTIONS, PASSED_OVER
 
-SLOT_ORDER: Final = (
-    "initial_bend",
-    "bend_vector",
-    "root_control",
-    "bank_suppression",
-    "finish",
-)
+SLOT_ORDER: Final = tuple(OPTIONS)
 """The slots in the order of `Plugs`."""
 
-AXES: Final = {"free": (0.0, 0.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0)} | {
+_AXES: Final = {
+    "free": (0.0, 0.0),
+    "x+": (1.0, 0.0),
+    "x-": (-1.0, 0.0),
     "y+": (0.0, 1.0),
     "y-": (0.0, -1.0),
 }
 
-
 CHOICES: Final = ("nearest", "margin")
 """The words of `Choose.by` in the order of `limbik.core.kernels.choose`, from 1."""
+
+
+def facing_axis(settings: Settings) -> Array:
+    """Return the reference joint's axis that faces the bend, in its frame, (3,): y if free."""
+    x, y = _AXES[settings.reference_axis]
+    return np.array([x, y or float(x == 0.0), 0.0])
 
 
 def by_joint(chain: Chain, values: Mapping[str, float], default: float) -> Array:
@@ -106,7 +108,7 @@ def flat_options(chain: Chain, settings: Settings) -> Options:
         name = chain.names[settings.bend_reference - 1]
         raise ChainError("the chain has no length from the bend root to the end", name)
     cone, held = settings.forbidden_cone, settings.held
-    axis_x, axis_y = AXES[settings.reference_axis]
+    axis_x, axis_y = _AXES[settings.reference_axis]
     return Options(
         full_fk=not settings.ik,
         tolerance=settings.tolerance,

@@ -5,10 +5,9 @@ from typing import Final
 import numpy as np
 
 from limbik.core.chain import Chain
-from limbik.core.flatten import AXES, Body, Options, flat_body, flat_options
+from limbik.core.flatten import Body, Options, facing_axis, flat_body, flat_options
 from limbik.core.kernels.planar_layout import Planar as Planar
 from limbik.core.pole import rest_line
-from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.core.settings import Settings
 
@@ -60,9 +59,8 @@ def flat_planar(chain: Chain, settings: Settings) -> Planar:
     """Return what only the 2D solver knows of a chain and its options."""
     limits = planar_limits(chain, settings)
     turning = np.nonzero(limits[1, :-1] - limits[0, :-1] > FIXED)[0]
-    axis_x, axis_y = AXES[settings.reference_axis]
-    _, rotations = forward_kinematics(chain, chain.rest)
-    faced = rotations[settings.bend_reference] @ [axis_x, axis_y or float(axis_x == 0.0), 0.0]
+    _, rotations = chain.rest_pose
+    faced = rotations[settings.bend_reference] @ facing_axis(settings)
     return Planar(
         low=np.ascontiguousarray(limits[0]),
         high=np.ascontiguousarray(limits[1]),

@@ -8,7 +8,7 @@ Everything here is in limbik's axes; a format turns what it reads and writes wit
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -46,6 +46,11 @@ class Motion:
     turns: Array
     zero: Array
     frame_time: float
+
+    @property
+    def first(self) -> "Motion":
+        """The first frame alone."""
+        return replace(self, offsets=self.offsets[:1], turns=self.turns[:1])
 
     def world(self) -> tuple[Array, Array]:
         """Return world positions (m, n, 3) and rotations (m, n, 3, 3)."""

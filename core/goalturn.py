@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.kernels import rotation as kernels
-from limbik.core.rotation import Array, matrix_to_hpb
+from limbik.core.rotation import Array, matrix_to_hpb, quaternion_to_matrix
 
 UNIT = 1e-3  # largest error of a quaternion's length that is taken for rounding of the input
 SQUARE = 1e-6  # likewise of RᵀR
@@ -21,13 +21,7 @@ def quaternion_to_hpb(quaternions: ArrayLike) -> Array:
     wrong = np.abs(length - 1.0) > UNIT
     if wrong.any():
         raise ValueError(length_fault(float(length[wrong][0])))
-    w, x, y, z = np.moveaxis(q / length[..., None], -1, 0)
-    rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ]
-    return matrix_to_hpb(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
+    return matrix_to_hpb(quaternion_to_matrix(q / length[..., None]))
 
 
 def carried(axes: Array, turn: Array) -> Array:

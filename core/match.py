@@ -6,16 +6,17 @@ its initial bend allows. From an IK pose: the FK offsets that make it.
 
 from dataclasses import dataclass, replace
 from math import atan2, cos, degrees, radians, sin
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.chain import Chain
 from limbik.core.errors import InputError
+from limbik.core.flatten import facing_axis
+from limbik.core.motion import turn_between
 from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array, wrap
-from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
 from limbik.core.solver import Solver
 
@@ -24,9 +25,6 @@ Mode = Literal["manual", "global"]
 CORRECTIONS = 4  # solves that correct the twist by what is left
 EXACT = 1e-9  # a difference that is rounding [rad]
 BENT = 1e-6  # a limb whose joints are nearer to its line is straight [limb lengths]
-_AXES = {"free": (0.0, 1.0), "x+": (1.0, 0.0), "x-": (-1.0, 0.0), "y+": (0.0, 1.0)} | {
-    "y-": (0.0, -1.0)
-}
 
 
 @dataclass(frozen=True)
@@ -69,17 +67,17 @@ def match_ik(solver: Solver, angles: ArrayLike, mode: Mode = "manual") -> Match:
         raise InputError("angles: every number must be finite")
     root = solver.settings.bend_reference - 1
     goal, side = positions[-1], _bend_side(solver, positions, rotations)
-    level = _expressed(_changed(solver, twist=0.0), goal, side, mode, None)
+    level = _expressed(solver.altered(twist=0.0), goal, side, mode, None)
     # Without limits the bend pose shows the bank the root takes by itself: a hinge turned the wrong
     # way would make CCD move everything.
     loose = Solver(_without_limits(solver.chain), level.settings, solver.registry)
-    untwisted = _changed(loose, max_iterations=0).solve(goal)
+    untwisted = loose.altered(max_iterations=0).solve(goal)
     twist = _bank_between(untwisted.rotations[root], rotations[root])
     best = None
     for _ in range(CORRECTIONS):
-        matched = _changed(level, twist=degrees(float(wrap(twist))))
+        matched = level.altered(twist=degrees(float(wrap(twist))))
         solution = matched.solve(goal)
-        apart = _largest_turn(solution.rotations, rotations)
+        apart = float(turn_between(solution.rotations[:-1], rotations[:-1]).max())
         if best is None or apart < best.difference:
             best = Match(goal, side, matched, solution, apart)
         twist += _bank_between(solution.rotations[root], rotations[root])
@@ -114,7 +112,7 @@ def convert_bend_vector(
         continuity: What the next solve will be given.
     """
     point = np.asarray(goal, np.float64)
-    side = _changed(solver, max_iterations=-1).solve(point, continuity=continuity).bend_vector
+    side = solver.altered(max_iterations=-1).solve(point, continuity=continuity).bend_vector
     return _expressed(solver, point, np.asarray(side), mode, continuity)
 
 
@@ -128,18 +126,6 @@ def _without_limits(chain: Chain) -> Chain:
     return Chain(joints, chain.base_position, chain.base_turn)
 
 
-def _largest_turn(first: Array, second: Array) -> float:
-    """Return the largest angle between the frames of two poses, the end's left out [rad]."""
-    apart = np.linalg.norm(first[:-1] - second[:-1], axis=(1, 2)) / np.sqrt(8.0)
-    return float(2.0 * np.arcsin(np.clip(apart, 0.0, 1.0)).max())
-
-
-def _changed(solver: Solver, **options: Any) -> Solver:
-    """The same solver with some options changed."""
-    given = solver.settings.model_dump(exclude_unset=True) | options
-    return Solver(solver.chain, Settings(**given), solver.registry)
-
-
 def _bend_side(solver: Solver, positions: Array, rotations: Array) -> Array:
     """Return the unit vector across root→end to the side where the joints between lie."""
     settings, root = solver.settings, solver.settings.bend_reference - 1
@@ -148,8 +134,7 @@ def _bend_side(solver: Solver, positions: Array, rotations: Array) -> Array:
     off = off - (off @ line) * line
     if np.linalg.norm(off) > BENT * solver.chain.length:
         return _unit(off, off)
-    x, y = _AXES[settings.reference_axis]
-    facing = x * rotations[root + 1, :, 0] + y * rotations[root + 1, :, 1]
+    facing = rotations[root + 1] @ facing_axis(settings)
     facing = facing - (facing @ line) * line
     spare = rotations[root, :, 1] - (rotations[root, :, 1] @ line) * line
     return _unit(facing, spare)
@@ -167,24 +152,20 @@ def _expressed(
 ) -> Solver:
     """Return the solver with a bend vector given in a mode."""
     if mode == "global":
-        return _changed(solver, bend_vector={"use": "global", "direction": tuple(side.tolist())})
+        return solver.altered(bend_vector={"use": "global", "direction": tuple(side.tolist())})
     choice = solver.settings.bend_vector
     excluded = isinstance(choice, dict) and bool(choice.get("exclude_bank", False))
-    aimed = _changed(
-        solver,
-        bend_vector="manual",
-        max_iterations=-1,
-        aim_twist=False,
-        fk_mix=0.0,
-        ik=True,
-    ).solve(goal, continuity=continuity)
+    aiming = solver.altered(
+        bend_vector="manual", max_iterations=-1, aim_twist=False, fk_mix=0.0, ik=True
+    )
+    aimed = aiming.solve(goal, continuity=continuity)
     angle = _manual_angle(solver, aimed, goal, side)
     if excluded and aimed.continuity is not None:
         root = solver.settings.bend_reference - 1
         angle += float(aimed.continuity.aim_root[2] - solver.chain.rest[root, 2])
     shown = degrees(float(wrap(angle)))
     vector = {"use": "manual", "angle": shown, "exclude_bank": excluded}
-    return _changed(solver, bend_vector=vector)
+    return solver.altered(bend_vector=vector)
 
 
 def _manual_angle(solver: Solver, aimed: Solution, goal: Array, side: Array) -> float:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
 
 from limbik.core.errors import Fault, InputError
+from limbik.core.settings import list_as_tuple
 from limbik.core.strategy import Parameter, Strategy, layout
 from limbik.core.wording import found_words, near_match, refusal
 
@@ -30,22 +31,16 @@ def _name_of_member(value: Any) -> Any:
     return member_name(value) if isinstance(value, IntEnum) else value
 
 
-def _list_as_tuple(value: Any) -> Any:
-    """Let a list from a scene stand for a tuple, which strict models refuse otherwise."""
-    return tuple(value) if isinstance(value, list) else value
-
-
 def _annotation(field: Parameter) -> Any:
     """The type pydantic checks a field as."""
     plain: Any = field.kind
-    constraints = field.constraints
     if issubclass(field.kind, IntEnum):
         names = tuple(member_name(member) for member in field.kind)
         plain = Annotated[Literal[names], BeforeValidator(_name_of_member)]
     elif field.size:
         items: Any = tuple.__class_getitem__((field.kind,) * field.size)
-        plain = Annotated[items, BeforeValidator(_list_as_tuple)]
-    for constraint in constraints:
+        plain = Annotated[items, BeforeValidator(list_as_tuple)]
+    for constraint in field.constraints:
         plain = Annotated[plain, constraint]
     return plain
 

@@ -6,14 +6,14 @@ the rest pose's line base→end to the line base→goal, and by the shares of th
 tilt that the limb follows.
 """
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field
 
 from limbik.core.chain import Chain
 from limbik.core.rotation import Array
-from limbik.core.settings import Model
+from limbik.core.settings import Model, list_as_tuple
 
 NO_LENGTH: Final = 1e-12
 Preset = Literal["arm", "leg"]
@@ -43,10 +43,6 @@ ROTORS: Final[dict[str, PoleRotor]] = {
 """Rotors by name (M-10): the pole follows hand and shoulder, or foot and hip."""
 
 
-def _place(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
-
-
 class Pole(Model):
     """Where the chain bends to (D-01).
 
@@ -55,7 +51,7 @@ class Pole(Model):
         rotor: None for a fixed pole, a preset's name, or a rotor.
     """
 
-    position: Annotated[tuple[float, float, float], BeforeValidator(_place)]
+    position: Annotated[tuple[float, float, float], BeforeValidator(list_as_tuple)]
     rotor: Preset | PoleRotor | None = None
 
     @property

@@ -40,6 +40,20 @@ def forward_kinematics(chain: Chain, angles: ArrayLike) -> tuple[Array, Array]:
     return positions, rotations
 
 
+def spread_poses(chain: Chain, shares: ArrayLike) -> Array:
+    """Return poses at shares of every axis's range; free axes count as -180° to 180°.
+
+    Args:
+        chain: n joints.
+        shares: 0 for the lower end to 1 for the upper, (..., n, 3).
+
+    Returns:
+        HPB [rad], (..., n, 3).
+    """
+    low, high = np.maximum(chain.low, -np.pi), np.minimum(chain.high, np.pi)
+    return np.asarray(low + np.asarray(shares, np.float64) * (high - low))
+
+
 def stages_of(chain: Chain, names: Sequence[str], angles: Array) -> tuple[Stage, ...]:
     """Give the poses of a trace their names and positions.
 

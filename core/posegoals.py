@@ -1,7 +1,6 @@
 """Goals with an orientation: what solves them, and what it gives back (M-13)."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -9,15 +8,11 @@ from numpy.typing import NDArray
 
 from limbik.core.binding import Bound
 from limbik.core.chain import Chain
-from limbik.core.errors import Fault
 from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.core.scenegoals import turn_paths
-from limbik.core.scenemodel import SceneModel, SolveModel
 from limbik.core.settings import Settings
 from limbik.core.solution import Continuity, Solution
 from limbik.core.strategy import mirrored
-from limbik.core.whole import OWN_SOLVERS, Batch, WholeSolution, prepare
-from limbik.core.yamlfile import Document
+from limbik.core.whole import Batch, WholeSolution, prepare
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,16 +151,3 @@ class WholeSolver:
     ) -> Solution:
         """Solve goals as a path; see `solve_turned`."""
         return solve_turned(self._batch, goals, goal_turns, True)
-
-
-def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
-    """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
-    planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if turns_end or planned or model.solver == "2d":
-        return
-    if model.solver in OWN_SOLVERS and model.options.end_orientation:
-        return
-    for path in turn_paths(model):
-        message = "its orientation has no effect: the scene's solver goes to positions alone"
-        hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
-        yield document.fault("solver", message, path, hint=hint)

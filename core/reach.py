@@ -5,7 +5,6 @@ from numpy.typing import ArrayLike
 
 from limbik.core.chain import SHORTEST, Chain
 from limbik.core.kernels.reach import least_reach
-from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 
 
@@ -32,13 +31,12 @@ def pull_into_reach(chain: Chain, goals: ArrayLike) -> Array:
     """
     points = np.asarray(goals, np.float64)
     least, greatest = reach_range(chain)
-    rest, _ = forward_kinematics(chain, chain.rest)
+    rest, _ = chain.rest_pose
     away = points - rest[0]
     distance = np.linalg.norm(away, axis=-1, keepdims=True)
     allowed = np.clip(distance, least, greatest)
     spare = rest[-1] - rest[0]
-    spare = (
-        spare / size if (size := np.linalg.norm(spare)) > SHORTEST else np.array([0.0, 0.0, 1.0])
-    )
+    length = np.linalg.norm(spare)
+    spare = spare / length if length > SHORTEST else np.array([0.0, 0.0, 1.0])
     direction = np.where(distance > SHORTEST, away / np.maximum(distance, SHORTEST), spare)
     return np.where(allowed == distance, points, rest[0] + direction * allowed)

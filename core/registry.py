@@ -167,7 +167,7 @@ class Registry:
     def _formats(self, kind: str, complete: bool) -> dict[str, SceneInput | Output]:
         if complete:
             self._load_third_party()
-        return {name: offered.format for name, offered in self._roster.formats(kind).items()}
+        return self._roster.formats(kind)
 
     def plugins(self) -> list[Plugin]:
         """All plug-ins, built-in ones first, then by name; also blocked and broken ones."""

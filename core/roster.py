@@ -2,11 +2,11 @@
 
 import contextlib
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
 from itertools import islice
-from typing import Any
+from typing import Any, TypeVar
 
 import pluggy
 
@@ -68,6 +68,9 @@ class OfferedFormat:
 
     format: SceneInput | Output
     plugin: Plugin
+
+
+Offer = TypeVar("Offer", Registered, OfferedFormat)
 
 
 @dataclass(frozen=True)
@@ -137,20 +140,12 @@ class Roster:
 
     def strategies(self, slot: str) -> dict[str, Registered]:
         """The strategies of a slot that work and have their name for themselves."""
-        firsts = {name: o for (where, name), o in self._offers.items() if where == slot}
-        return {
-            name: offers[0]
-            for name, offers in firsts.items()
-            if len(offers) == 1 or offers[0].plugin.built_in
-        }
+        return _unrivalled(self._offers, slot)
 
-    def formats(self, kind: str) -> dict[str, OfferedFormat]:
+    def formats(self, kind: str) -> dict[str, SceneInput | Output]:
         """The formats of a kind (`scene_input`, `output`) that have their name for themselves."""
-        return {
-            name: offers[0]
-            for (where, name), offers in self._formats.items()
-            if where == kind and (len(offers) == 1 or offers[0].plugin.built_in)
-        }
+        found = _unrivalled(self._formats, kind)
+        return {name: offered.format for name, offered in found.items()}
 
     def leave_out(self, plugin: Plugin) -> None:
         """Note a plug-in that is blocked."""
@@ -222,6 +217,15 @@ class Roster:
                 others = [o.plugin for o in offers if o is not offer]
                 rivals = [owner] if owner.built_in else others
                 yield Broken(offer.plugin, _clash_text(rivals), slot, name)
+
+
+def _unrivalled(offers: Mapping[tuple[str, str], Sequence[Offer]], kind: str) -> dict[str, Offer]:
+    """The first of the offers of a kind, by name, where no other plug-in has the right to it."""
+    return {
+        name: found[0]
+        for (where, name), found in offers.items()
+        if where == kind and (len(found) == 1 or found[0].plugin.built_in)
+    }
 
 
 def _clash_text(rivals: list[Plugin]) -> str:

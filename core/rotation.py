@@ -1,4 +1,4 @@
-"""Rotations as arrays: heading, pitch, bank (HPB) and matrices.
+"""Rotations as arrays: heading, pitch, bank (HPB), matrices and quaternions.
 
 Left-handed, Y up, column vectors: `p_parent = offset + R p`. The elementary rotations have
 CINEMA 4D's sense, the transpose of the textbook right-hand formulas, and a joint turns by
@@ -61,6 +61,52 @@ def matrix_to_hpb(matrices: ArrayLike) -> Array:
     )
     bank = np.where(upright, 0.0, np.arctan2(-m[..., 1, 0], m[..., 1, 1]))
     return np.stack([heading, pitch, bank], axis=-1)
+
+
+def matrix_to_quaternion(matrices: ArrayLike) -> Array:
+    """Return the unit quaternions (w, x, y, z) of rotation matrices.
+
+    Args:
+        matrices: Rotation matrices, shape (..., 3, 3).
+
+    Returns:
+        Shape (..., 4), the largest part positive.
+    """
+    m = np.asarray(matrices, np.float64)
+    diagonal = np.diagonal(m, axis1=-2, axis2=-1)
+    x, y, z = np.moveaxis(diagonal, -1, 0)
+    sizes = np.stack([x + y + z, x - y - z, y - x - z, z - x - y], -1)  # 4 part² - 1
+    ax, ay, az = (
+        m[..., 2, 1] - m[..., 1, 2],
+        m[..., 0, 2] - m[..., 2, 0],
+        m[..., 1, 0] - m[..., 0, 1],
+    )
+    xy, xz, yz = (
+        m[..., 1, 0] + m[..., 0, 1],
+        m[..., 0, 2] + m[..., 2, 0],
+        m[..., 2, 1] + m[..., 1, 2],
+    )
+    w2, x2, y2, z2 = np.moveaxis(1.0 + sizes, -1, 0)
+    rows = [[w2, ax, ay, az], [ax, x2, xy, xz], [ay, xy, y2, yz], [az, xz, yz, z2]]
+    table = np.stack([np.stack(row, -1) for row in rows], -2)  # 4 q qᵀ
+    largest = sizes.argmax(-1)
+    q = np.take_along_axis(table, largest[..., None, None], -2)[..., 0, :]
+    return np.asarray(q / np.linalg.norm(q, axis=-1, keepdims=True))
+
+
+def quaternion_to_matrix(quaternions: ArrayLike) -> Array:
+    """Return the rotation matrices of unit quaternions.
+
+    Args:
+        quaternions: (w, x, y, z), shape (..., 4).
+    """
+    w, x, y, z = np.moveaxis(np.asarray(quaternions, np.float64), -1, 0)
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, -1) for row in rows], -2)
 
 
 def other_form(angles: ArrayLike) -> Array:

@@ -42,12 +42,13 @@ from limbik.core.choices import checkable, strategy_faults
 from limbik.core.errors import ChainError, Fault, SceneError, shortlist
 from limbik.core.formats import Body
 from limbik.core.pole import Pole
-from limbik.core.posegoals import PoseBatch, turn_faults
+from limbik.core.posegoals import PoseBatch
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scenegoals import file_axes_faults, goals_of, pole_of, taken_turns, twice
 from limbik.core.scenemodel import JointModel, JudgeModel, SceneModel, SolveModel
 from limbik.core.sceneoptions import option_faults, unknown_joints
+from limbik.core.scenesolver import turn_faults
 from limbik.core.settings import Settings
 from limbik.core.slots import SOLVER
 from limbik.core.trajectorymodel import TrajectoryModel
@@ -166,8 +167,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         raise SceneError(shortlist(faults))
 
     if source.body is not None:
-        title = Path(document.name).stem.strip("<>")
-        return build_scene(title, model, document, folder, registry, source.body)
+        return build_scene(document.title, model, document, folder, registry, source.body)
     joints = [joint.name for joint in model.chain.joints]
     faults += _joint_faults(joints, document)
     chain = None
@@ -175,7 +175,7 @@ def scene_from(document: Document, folder: Path, registry: Registry | None = Non
         chain = _chain(model)
     except ChainError as error:
         faults += () if faults else _chain_faults(error, model, document)
-    title = Path(document.name).stem.strip("<>")
+    title = document.title
     return build_scene(title, model, document, folder, registry, None, chain, joints, faults)
 
 
@@ -217,7 +217,7 @@ def build_scene(
             solver, turns_end = _solver(model, chain, registry)
             found += turn_faults(model, turns_end, document)
     except ChainError as error:
-        found += [document.fault(f.code, f.message, ("solver",), hint=f.hint) for f in error.faults]
+        found += [document.placed(fault, ("solver",)) for fault in error.faults]
     turns = taken_turns(model, goals, turns_end)
     found += [*file_axes_faults(model, goals, turns, document), *goals.faults]
     if chain is None or found:
@@ -300,4 +300,4 @@ def _chain_faults(error: ChainError, model: SceneModel, document: Document) -> t
     for index, joint in enumerate(model.chain.joints):
         if joint.name == error.joint:
             path = (*path, index)
-    return tuple(document.fault(f.code, f.message, path, hint=f.hint) for f in error.faults)
+    return tuple(document.placed(fault, path) for fault in error.faults)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from limbik.core.chain import vector
 from limbik.core.errors import Fault
 from limbik.core.formats import Body
 from limbik.core.frames import BY_NAME
@@ -13,7 +14,7 @@ from limbik.core.goalarrays import read_goal_arrays
 from limbik.core.goals import GoalTable, read_goals
 from limbik.core.pole import Pole
 from limbik.core.rotation import Array
-from limbik.core.scenemodel import CsvModel, GoalModel, NpzModel, SceneModel, SolveModel
+from limbik.core.scenemodel import CsvModel, GoalModel, NpzModel, SolveModel
 from limbik.core.yamlfile import Document, KeyPath
 
 
@@ -63,8 +64,8 @@ def pole_of(model: SolveModel) -> Pole | None:
     """Give the pole, in limbik's axes."""
     if model.pole is None:
         return None
-    x, y, z = turned(model, np.array(model.pole.position)).tolist()
-    return Pole(position=(x, y, z), rotor=model.pole.rotor)
+    place = vector(turned(model, np.array(model.pole.position)))
+    return Pole(position=place, rotor=model.pole.rotor)
 
 
 def turned(model: SolveModel, places: Array) -> Array:
@@ -76,15 +77,14 @@ def turned(model: SolveModel, places: Array) -> Array:
 def turn_paths(model: SolveModel) -> Iterator[KeyPath]:
     """Give the places of the orientations in a scene's own list of goals."""
     for number, goal in enumerate(model.goals if isinstance(model.goals, list) else ()):
-        if goal.turn_key:
-            yield ("goals", number, goal.turn_key)
+        for key in goal.turn_keys:
+            yield ("goals", number, key)
 
 
 def taken_turns(model: SolveModel, goals: Goals, turns_end: bool) -> Array | None:
     """Return the goals' turns if anything turns by them; files may hold more than is asked for."""
-    planned = isinstance(model, SceneModel) and model.trajectory is not None
     rotor = model.pole is not None and model.pole.rotor is not None
-    taken = turns_end or planned or rotor or model.options.end_orientation > 0.0
+    taken = turns_end or model.is_planned or rotor or model.options.end_orientation > 0.0
     return goals.turns if taken else None
 
 
@@ -92,7 +92,7 @@ def axes_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     """Refuse what only has a meaning in limbik's axes where a scene gives others."""
     if model.axes not in BY_NAME:
         return
-    if isinstance(model, SceneModel) and model.trajectory is not None:
+    if model.is_planned:
         message = "a trajectory is in limbik's axes"
         yield document.fault("axes", message, ("axes",), hint="leave 'axes' out")
     for path in turn_paths(model):
@@ -116,14 +116,7 @@ def _axes_fault(path: KeyPath, document: Document) -> Fault:
 def _of_table(table: GoalTable, key: str, model: SolveModel, document: Document) -> Goals:
     """Point faults without a place in the file at its key in the scene."""
     faults = tuple(
-        fault
-        if fault.line
-        else document.fault(
-            fault.code,
-            f"{fault.file}: {fault.message}",
-            ("goals", fault.key if fault.key == "array" else key),
-            hint=fault.hint,
-        )
+        document.placed(fault, ("goals", fault.key if fault.key == "array" else key))
         for fault in table.faults
     )
     places = turned(model, table.positions)
@@ -139,18 +132,33 @@ def _listed(goals: Sequence[GoalModel], model: SolveModel, document: Document) -
     names = tuple(name or str(number) for number, name in enumerate(given, 1))
     places = turned(model, np.array([goal.place for goal in goals]).reshape(-1, 3))
     turns = [np.full(3, np.nan) if goal.turn is None else goal.turn for goal in goals]
-    has_turns = any(goal.turn_key for goal in goals)
+    has_turns = any(goal.turn_keys for goal in goals)
     return Goals(names, places, np.array(turns) if has_turns else None, faults=tuple(faults))
 
 
 def twice(
-    names: Sequence[str | None], path: KeyPath, what: str, document: Document
+    names: Sequence[str | None],
+    path: KeyPath,
+    what: str,
+    document: Document,
+    *,
+    inside: KeyPath = ("name",),
+    hint: str = "",
 ) -> Iterator[Fault]:
-    """Give a fault for every name that is given again."""
+    """Give a fault for every name that is given again.
+
+    Args:
+        names: Of the entries of a list; None for those without.
+        path: Place of the list.
+        what: The entries are.
+        document: Where the list stands.
+        inside: Place of a name in its entry.
+        hint: What to try.
+    """
     first: dict[str | None, int] = {}
     for index, name in enumerate(names):
         if name is not None and name in first:
-            line, _ = document.position((*path, first[name], "name"))
+            line, _ = document.position((*path, first[name], *inside))
             message = f"the {what} '{name}' is given twice, first at line {line}"
-            yield document.fault("duplicate-name", message, (*path, index, "name"))
+            yield document.fault("duplicate-name", message, (*path, index, *inside), hint=hint)
         first.setdefault(name, index)

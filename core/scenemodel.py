@@ -157,10 +157,10 @@ class GoalModel(Model):
         return self.matrix[0][3], self.matrix[1][3], self.matrix[2][3]
 
     @property
-    def turn_key(self) -> str:
-        """The key that gives the orientation; empty without one."""
+    def turn_keys(self) -> list[str]:
+        """The keys that give an orientation: none or, if it is sound, one."""
         keys = ("rotation", "quaternion", "matrix")
-        return next((key for key in keys if getattr(self, key) is not None), "")
+        return [key for key in keys if getattr(self, key) is not None]
 
     @property
     def turn(self) -> Array | None:
@@ -173,9 +173,8 @@ class GoalModel(Model):
 
     @model_validator(mode="after")
     def _one_pose(self) -> "GoalModel":
-        given = [n for n in ("rotation", "quaternion", "matrix") if getattr(self, n) is not None]
-        if len(given) > 1:
-            words = {"given": " and ".join(given)}
+        if len(self.turn_keys) > 1:
+            words = {"given": " and ".join(self.turn_keys)}
             raise PydanticCustomError("choice", "one orientation, not {given}", words)
         if (self.position is None) == (self.matrix is None):
             raise PydanticCustomError("choice", "needs a position, or a matrix that holds it")
@@ -281,6 +280,11 @@ class SolveModel(Model):
         Discriminator(_goals_form),
     ]
 
+    @property
+    def is_planned(self) -> bool:
+        """Whether it has a trajectory; then it needs no goals."""
+        return False
+
 
 class SceneModel(SolveModel):
     """A whole scene file."""
@@ -292,3 +296,8 @@ class SceneModel(SolveModel):
     trajectory: Annotated[
         TrajectoryModel | None, Field(description="key points and moves between them")
     ] = None
+
+    @property
+    def is_planned(self) -> bool:
+        """Whether it has a trajectory; then it needs no goals."""
+        return self.trajectory is not None

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from limbik.core.errors import Fault
 from limbik.core.scenegoals import Goals, axes_faults
 from limbik.core.scenemodel import SceneModel, SolveModel
-from limbik.core.sceneplane import solver_faults
+from limbik.core.scenesolver import solver_faults
 from limbik.core.settings import joint_tables, narrowing
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath
@@ -78,8 +78,12 @@ def _limit_faults(limited: Sequence[str], model: SolveModel, document: Document)
 
 def _end_faults(model: SolveModel, goals: Goals, document: Document) -> Iterator[Fault]:
     """An end can take over the goals' orientation only where a goal has one."""
-    planned = isinstance(model, SceneModel) and model.trajectory is not None
-    if not model.options.end_orientation or planned or goals.faults or goals.turns is not None:
+    if (
+        not model.options.end_orientation
+        or model.is_planned
+        or goals.faults
+        or goals.turns is not None
+    ):
         return
     listed = isinstance(model.goals, list)
     hint = "give the goals a 'rotation'" if listed else "see docs/goal-files.md"

@@ -12,12 +12,12 @@ Axis = Literal["x+", "x-", "y+", "y-", "z+", "z-"]
 Choice = str | dict[str, Any]
 
 
-def _pair(value: Any) -> Any:
+def list_as_tuple(value: Any) -> Any:
     """Let a list from a scene stand for a tuple, which strict models refuse otherwise."""
     return tuple(value) if isinstance(value, list) else value
 
 
-Turn = Annotated[tuple[float, float, float], BeforeValidator(_pair)]
+Turn = Annotated[tuple[float, float, float], BeforeValidator(list_as_tuple)]
 
 
 class Model(BaseModel):
@@ -115,7 +115,7 @@ class Settings(Model):
             Annotated[float, Field(ge=-1.0, le=1.0)],
             Annotated[float, Field(ge=-1.0, le=1.0)],
         ],
-        BeforeValidator(_pair),
+        BeforeValidator(list_as_tuple),
         Field(description="bend weight base (min, max) [-]"),
     ] = (0.0, 0.0)
     bend_reference: Annotated[

@@ -99,19 +99,13 @@ class Skeleton:
         Raises:
             InputError: There is none of this name.
         """
-        if name in self.names:
-            return self.names.index(name)
-        known = f"{self.part}s: {', '.join(self.names[:12])}"
-        hint = near_match(name, list(self.names)) or known
-        message = f"the {self.whole} has no {self.part} '{name}'"
-        raise InputError(Fault(f"unknown-{self.part}", message, key, hint=hint))
+        if name not in self.names:
+            raise InputError(_unknown(name, key, self.names, self.whole, self.part))
+        return self.names.index(name)
 
     def above(self, joint: int) -> list[int]:
         """Return a joint and all it hangs from, upward."""
-        way = [joint]
-        while self.parents[way[-1]] >= 0:
-            way.append(self.parents[way[-1]])
-        return way
+        return _upward(joint, self.parents)
 
     def way(self, base: str, end: str) -> list[int]:
         """Return the joints from one down to another.
@@ -119,21 +113,7 @@ class Skeleton:
         Raises:
             InputError: As `limb`.
         """
-        faults: list[Fault] = []
-        for key, name in (("base", base), ("end", end)):
-            try:
-                self.at(name, key)
-            except InputError as error:
-                faults += error.faults
-        if faults:
-            raise InputError(faults)
-        way = self.above(self.at(end))
-        first = self.at(base)
-        if first not in way[1:]:
-            above = ", ".join(self.names[joint] for joint in way[1:13]) or "nothing, it is a root"
-            message = f"the {self.part} '{end}' does not hang from '{base}'"
-            raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
-        return way[way.index(first) :: -1]
+        return way_down(self.names, self.parents, base, end, self.whole, self.part)
 
     def seen_from(self, joint: int, limb: Limb) -> Limb:
         """Return a limb with its goals in the axes of a joint, as the skeleton itself moves.
@@ -164,6 +144,52 @@ class Skeleton:
         if parent < 0:
             return place, np.broadcast_to(np.eye(3), (*rotations.shape[:-3], 3, 3))
         return place, rotations[..., parent, :, :]
+
+
+def way_down(
+    names: Sequence[str],
+    parents: Sequence[int],
+    base: str,
+    end: str,
+    whole: str = "skeleton",
+    part: str = "joint",
+) -> list[int]:
+    """Return the indices of the joints from one down to another.
+
+    Args:
+        names: Of n joints.
+        parents: Index of each joint's parent; -1 for a root.
+        base: Where the way starts.
+        end: Where it ends, below the base.
+        whole: What messages call all joints together.
+        part: What they call a joint.
+
+    Raises:
+        InputError: There is no such joint, or the end does not hang from the base; the keys of the
+            faults are `base` and `end`.
+    """
+    given = (("base", base), ("end", end))
+    unknown = [(key, name) for key, name in given if name not in names]
+    if unknown:
+        raise InputError(_unknown(name, key, names, whole, part) for key, name in unknown)
+    way, first = _upward(names.index(end), parents), names.index(base)
+    if first not in way[1:]:
+        above = ", ".join(names[joint] for joint in way[1:13]) or "nothing, it is a root"
+        message = f"the {part} '{end}' does not hang from '{base}'"
+        raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
+    return way[way.index(first) :: -1]
+
+
+def _upward(joint: int, parents: Sequence[int]) -> list[int]:
+    way = [joint]
+    while parents[way[-1]] >= 0:
+        way.append(parents[way[-1]])
+    return way
+
+
+def _unknown(name: str, key: str, names: Sequence[str], whole: str, part: str) -> Fault:
+    hint = near_match(name, list(names)) or f"{part}s: {', '.join(names[:12])}"
+    return Fault(f"unknown-{part}", f"the {whole} has no {part} '{name}'", key, hint=hint)
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,8 +234,6 @@ class JointSkeleton(Skeleton):
 
 def standing(skeleton: Skeleton, limb: Limb) -> Limb:
     """Return a limb whose chain stands where the skeleton's first frame has it."""
-    motion = skeleton.motion
-    first = replace(motion, offsets=motion.offsets[:1], turns=motion.turns[:1])
-    places, turns = first.world()
+    places, turns = skeleton.motion.first.world()
     place, turn = skeleton.placed(limb, places[0], turns[0])
     return replace(limb, chain=limb.chain.moved(place, turn))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from limbik.core.kernels.own import WIDTH as OWN_WIDTH
+from limbik.core.rotation import hpb_to_matrix
 from limbik.core.strategy import MAX_PARAMS as MAX_PARAMS
 
 if TYPE_CHECKING:
@@ -85,22 +86,15 @@ def _bend_samples() -> list[Sample]:
     ]
 
 
-def _turn(heading: float, pitch: float) -> Any:
-    """A rotation matrix RY(heading) RX(pitch) in the senses of the readings."""
-    ch, sh, cp, sp = np.cos(heading), np.sin(heading), np.cos(pitch), np.sin(pitch)
-    about_y = np.array([[ch, 0.0, -sh], [0.0, 1.0, 0.0], [sh, 0.0, ch]])
-    return np.ascontiguousarray(about_y @ np.array([[1.0, 0, 0], [0, cp, sp], [0, -sp, cp]]))
-
-
 def _vector_samples() -> list[Sample]:
     """A root turned off its axes; one whose end is on the aim line, at the start of a motion."""
-    frame = _turn(0.3, -0.4)
+    frame = hpb_to_matrix([0.3, -0.4, 0.0])
     aim = np.ascontiguousarray(frame[:, 2])
     offset = np.array([0.02, -0.03, 0.1])
     previous = np.ascontiguousarray(frame[:, 1])
     forward, none = np.array([0.0, 0.0, 1.0]), np.zeros(3)
     return [
-        (frame, aim, offset, _turn(-1.0, 0.2), 0.1, previous, None, np.zeros(3)),
+        (frame, aim, offset, hpb_to_matrix([-1.0, 0.2, 0.0]), 0.1, previous, None, np.zeros(3)),
         (np.eye(3), forward, none, np.eye(3), 0.0, none.copy(), None, np.zeros(3)),
     ]
 

@@ -209,10 +209,14 @@ class Solution:
         }
 
     def limits_touched(self) -> tuple[str, ...]:
-        """Return the joint axes that rest on an end of their range, like `elbow pitch`.
+        """Return what `resting_axes` does by the joints' names, like `elbow pitch`."""
+        return tuple(f"{self.chain.names[joint]} {what}" for joint, what in self.resting_axes())
+
+    def resting_axes(self) -> list[tuple[int, str]]:
+        """Return joint and axis of all that rest on an end of their range, in the chain's order.
 
         Fixed axes are left out: they always rest. A joint that rests on its own limit is told with
-        the limit's name, like `shoulder cone`.
+        the limit's name in place of an axis, like `cone`.
         """
         low, high = self.chain.low, self.chain.high
         resting = (self.angles <= low + AT_LIMIT) | (self.angles >= high - AT_LIMIT)
@@ -224,4 +228,4 @@ class Solution:
             mirrored = self.chain.joints[joint].mirrored
             if limit and margin_of(limit, mirrored, self.angles[joint]) < AT_LIMIT:
                 found.append((joint, limit.name))
-        return tuple(f"{self.chain.names[joint]} {what}" for joint, what in sorted(found))
+        return sorted(found)

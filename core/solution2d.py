@@ -49,12 +49,12 @@ class PlanarSolution(Solution):
     rotor: Array | None = None
     goal_rotation: Array | None = None
 
-    def limits_touched(self) -> tuple[str, ...]:
-        """Return the planar joints that rest on an end of their range, like `knee planar`."""
+    def resting_axes(self) -> list[tuple[int, str]]:
+        """Return the planar joints that rest on an end of their range, each with `planar`."""
         low, high = self.planar_limits
         resting = (self.planar_angles <= low + AT_LIMIT) | (self.planar_angles >= high - AT_LIMIT)
         found = np.nonzero(resting & (high - low > AT_LIMIT))[0]
-        return tuple(f"{self.chain.names[joint]} planar" for joint in found.tolist())
+        return [(joint, "planar") for joint in found.tolist()]
 
     def _row(self, row: int) -> dict[str, Any]:
         fields = Solution._row(self, row)

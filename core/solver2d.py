@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Final, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from limbik.core.chain import Chain
+from limbik.core.chain import Chain, vector
 from limbik.core.errors import Fault, InputError
 from limbik.core.flatten2d import (
     Planar,
@@ -67,8 +67,7 @@ class Solver2D(Solver):
         **options: Any,
     ) -> None:
         if not isinstance(pole, Pole):
-            x, y, z = checked(pole, (3,), "pole").tolist()
-            pole = Pole(position=(x, y, z))
+            pole = Pole(position=vector(checked(pole, (3,), "pole")))
         self.pole = pole
         super().__init__(chain, settings, registry, **options)
 
@@ -209,9 +208,8 @@ class Solver2D(Solver):
 
     def with_pole(self, position: Array) -> Self:
         """Return this solver with its pole elsewhere, (3,) [length]; the rotor stays."""
-        x, y, z = position.tolist()
         found = copy(self)
-        found.pole = self.pole.model_copy(update={"position": (x, y, z)})
+        found.pole = self.pole.model_copy(update={"position": vector(position)})
         return found
 
     def variant(self, planar: Planar, **options: Any) -> Self:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from limbik.core.errors import InputError
+from limbik.core.errors import InputError, clipped
 from limbik.core.params import sample
 from limbik.core.slots import Slot
 from limbik.core.strategy import API, Strategy, flatten, layout, unflatten
@@ -94,5 +94,4 @@ def _copy(argument: Any) -> Any:
 
 
 def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return clipped(repr(value), 60)

@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from limbik.core.errors import Fault, InputError, shortlist
+from limbik.core.errors import Fault, InputError, clipped, shortlist
 from limbik.core.wording import Wording, found_words, near_match, refusal
 from limbik.core.yamlfile import Document, KeyPath
 
@@ -126,8 +126,7 @@ def _unknown_key(path: KeyPath, content: Any, model: object) -> Wording:
     if not hint and known:
         listed = ", ".join(known[:_MOST_LISTED])
         hint = f"known: {listed}" + (", ..." if len(known) > _MOST_LISTED else "")
-    shown = key if len(key) <= 40 else f"{key[:37]}..."
-    return Wording("unknown-key", message=f"unknown key '{shown}'", hint=hint)
+    return Wording("unknown-key", message=f"unknown key '{clipped(key)}'", hint=hint)
 
 
 def _missing(path: KeyPath, content: Any) -> _Finding:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
+from limbik.core.errors import clipped
 from limbik.core.yamlscalars import looks_like_number
 
 _TYPES = {
@@ -61,7 +62,7 @@ def found_words(value: object) -> str:
         case bool():
             return "true" if value else "false"
         case str():
-            return f"text {_quoted(value)}"
+            return f"text {clipped(value)!r}"
         case list() | tuple():
             return f"a list of {len(value)}"
         case Mapping():
@@ -158,7 +159,3 @@ def _type_hint(allowed: str, found: object) -> str:
         if looks_like_number(plain):
             return f"write {plain}, without quotes" if plain == found else f"write {plain}"
     return ""
-
-
-def _quoted(text: str) -> str:
-    return repr(text if len(text) <= 40 else f"{text[:37]}...")

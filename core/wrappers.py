@@ -8,10 +8,7 @@ and to a function that makes the strategy's parameters from their flat array.
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from limbik.core.rotation import Array
 
 kernel: Callable[..., None]
 rebuild: Callable[[Array], Any]

@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 
-from limbik.core.errors import Fault, SceneError, key_text, shortlist
+from limbik.core.errors import Fault, SceneError, clipped, key_text, shortlist
 from limbik.core.yamlscalars import ScalarFault, plain_scalar
 from limbik.core.yamlsyntax import is_nesting, syntax_fault
 from limbik.core.yamltext import MOST_BYTES, odd_character, read_text
@@ -47,6 +47,11 @@ class Document:
     keys: dict[KeyPath, Position]
     at: KeyPath = ()
 
+    @property
+    def title(self) -> str:
+        """Name of the file without folder and ending."""
+        return Path(self.name).stem.strip("<>")
+
     def under(self, path: Sequence[str | int]) -> "Document":
         """Return the part of the document at a path, as a document with places of its own."""
         content = self.content
@@ -78,6 +83,13 @@ class Document:
         line, column = self.key_position(path) if at_key else self.position(path)
         key = key_text((*self.at, *path))
         return Fault(code, message, key, self.name, line, column, hint)
+
+    def placed(self, fault: Fault, path: Sequence[str | int]) -> Fault:
+        """Point a fault that has no place of its own at a value of this document."""
+        if fault.line:
+            return fault
+        message = f"{fault.file}: {fault.message}" if fault.file else fault.message
+        return self.fault(fault.code, message, path, hint=fault.hint)
 
 
 def read_yaml(source: str | bytes, name: str) -> Document:
@@ -227,7 +239,7 @@ class _Reader:
             inner = (*path, key)
             if key in mapping:
                 first = "line {}, column {}".format(*self.keys[inner])
-                message = f"key '{_short(key)}' is given twice, first at {first}"
+                message = f"key '{clipped(key)}' is given twice, first at {first}"
                 self._fault("duplicate", message, _start(event), inner)
             self.keys.setdefault(inner, _start(event))
             mapping[key] = self._node(inner, next(self._events))
@@ -246,7 +258,7 @@ class _Reader:
         if not quoted and text == "<<":
             self._fault("alias", "merge keys are not allowed", place, path)
         elif not text or not (quoted or isinstance(self._scalar(event, path, place), str)):
-            shown = f"write it in quotes: '{_short(text)}'" if text else "it is empty"
+            shown = f"write it in quotes: '{clipped(text)}'" if text else "it is empty"
             self._fault("key", f"a key must be text; {shown}", place, path)
         elif odd := odd_character(text):
             self._fault("encoding", f"the character {odd} is not allowed in a key", place, path)
@@ -255,7 +267,3 @@ class _Reader:
 
 def _start(event: Any) -> Position:
     return event.start_mark.line + 1, event.start_mark.column + 1
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:37]}..."

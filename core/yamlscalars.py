@@ -15,6 +15,8 @@ So `yes`, `no`, `on`, `off`, `True`, `0x10`, `0o17`, `1_000`, `1:30` and `2026-0
 import math
 import re
 
+from limbik.core.errors import clipped
+
 Scalar = str | int | float | bool | None
 
 _WORDS: dict[str, bool | None] = {"": None, "~": None, "null": None, "true": True, "false": False}
@@ -56,18 +58,16 @@ def looks_like_number(text: str) -> bool:
 
 def _whole(text: str) -> int:
     if len(text) > _MOST_DIGITS or abs(int(text)) > _LARGEST:
-        raise ScalarFault("number", f"the number is too large: {_cut(text)}")
+        raise ScalarFault("number", f"the number is too large: {clipped(text, 15)}")
     return int(text)
 
 
 def _number(text: str) -> float:
     value = float(text)
     if math.isinf(value):
-        raise ScalarFault("number", f"the number is too large: {_cut(text)}")
+        raise ScalarFault("number", f"the number is too large: {clipped(text, 15)}")
     if value == 0.0 and re.search("[1-9]", re.split("[eE]", text)[0]):
-        raise ScalarFault("number", f"the number is too small to tell from zero: {_cut(text)}")
+        raise ScalarFault(
+            "number", f"the number is too small to tell from zero: {clipped(text, 15)}"
+        )
     return value
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= 15 else f"{text[:12]}..."

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
-from limbik.core.pose import forward_kinematics
+from limbik.core.pose import forward_kinematics, spread_poses
 from limbik.core.registry import Registry
+from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.core.solver import Solver
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 MOST_BOXES = 1_000_000
@@ -135,8 +135,7 @@ def random_chain(random: np.random.Generator, joints: int) -> Chain:
 
 def poses(chain: Chain, count: int, random: np.random.Generator) -> Array:
     """Return random poses inside the limits, (count, n, 3) [rad]."""
-    low, high = np.maximum(chain.low, -np.pi), np.minimum(chain.high, np.pi)
-    return low + (high - low) * random.random((count, len(chain), 3))
+    return spread_poses(chain, random.random((count, len(chain), 3)))
 
 
 def audit(joints: int, count: int, seed: int, registry: Registry) -> Counter[str]:

@@ -4,18 +4,17 @@ from collections import Counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
 from limbik.core.errors import ChainError
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
+from limbik.core.rotation import Array
 from limbik.core.solution import Solution, Status
 from limbik.core.solution2d import PlanarSolution
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 
-Array = NDArray[np.float64]
 Span = tuple[float, float] | None
 
 BONES = (0.0, 1e-9, 1e-3, 1.0, 1.0)

@@ -7,23 +7,20 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from limbik.core.chain import Chain, Joint
 from limbik.core.pose import forward_kinematics
 from limbik.core.registry import Registry
+from limbik.core.rotation import Array as Array
 from limbik.core.settings import Settings
 from limbik.core.solution import Solution
 from limbik.core.solver import Solver
 
-Array = NDArray[np.float64]
 REGISTRY = Registry(third_party=False)
 Z = (0.0, 0.0, 1.0)
 
@@ -64,16 +61,6 @@ ARM_OPTIONS: dict[str, Any] = {
     "reference_axis": "y-",
 }
 """With them the arm bends the way its elbow can."""
-
-
-def plain(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a kernel as the Python function it was, with the kernels it calls alike."""
-    function: Any = getattr(kernel, "py_func", kernel)
-    names = {**function.__globals__}
-    for name in function.__code__.co_names:
-        if hasattr(names.get(name), "py_func"):
-            names[name] = plain(names[name])
-    return FunctionType(function.__code__, names)
 
 
 def solver(chain: Chain, **options: Any) -> Solver:
@@ -171,9 +158,11 @@ def chains(draw: st.DrawFn, generic: bool = False) -> Chain:
 
 
 def _wide(draw: st.DrawFn) -> tuple[float, float] | None:
+    """Draw a wide range whose ends are not equally far from its middle: no goal lies between."""
     if draw(st.booleans()):
         return None
-    return -draw(st.integers(20, 170)), draw(st.integers(20, 170))
+    low = draw(st.integers(20, 170))
+    return -low, draw(st.integers(20, 170).filter(lambda high: high != low))
 
 
 @st.composite

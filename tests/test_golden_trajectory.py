@@ -14,19 +14,13 @@ import numpy as np
 import pytest
 
 from limbik.core.errors import InputError
+from limbik.core.rotation import matrix_to_quaternion, quaternion_to_matrix
 from limbik.plugins.paths.arc import Arc as ArcShape
 from limbik.plugins.paths.arc import arc_about, arc_through
 from limbik.plugins.paths.cubic import Cubic, hermite, spline
 from limbik.plugins.paths.moves import Drive
 from limbik.plugins.paths.profile import Profile
-from limbik.plugins.paths.quaternions import (
-    double_slerp,
-    from_matrix,
-    half_angle,
-    short_way,
-    slerp,
-    to_matrix,
-)
+from limbik.plugins.paths.quaternions import double_slerp, half_angle, short_way, slerp
 from limbik.plugins.paths.ramps import Rates, from_ramp_times, profile
 from limbik.plugins.paths.shapes import Polyline, Shape
 from limbik.trajectory import (
@@ -157,9 +151,9 @@ def profile_of(given: Case) -> Profile:
 
 
 def check_quaternion(given: Case, expect: Case) -> None:
-    found = from_matrix(given["R"])
+    found = matrix_to_quaternion(given["R"])
     same_rotations(found, expect["q"], "q")
-    near(to_matrix(found), expect["R_back"], "R_back")
+    near(quaternion_to_matrix(found), expect["R_back"], "R_back")
 
 
 def check_slerp(given: Case, expect: Case) -> None:

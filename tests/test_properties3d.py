@@ -176,7 +176,9 @@ def comparable(options: dict[str, Any]) -> dict[str, Any]:
     goal. A chain that bends in a plane of its own has both ends of a range equally far when its
     goal lies behind: its bend is tilted.
     """
-    left_out = {"fk_mix", "finish"} | ({"twist"} if options.get("twist") == 180.0 else set())
+    left_out = {"fk_mix", "finish"} | (
+        {"twist"} if abs(options.get("twist", 0.0)) == 180.0 else set()
+    )
     vector = options.get("bend_vector", {"use": "manual"})
     if vector["use"] != "global":
         vector = {**vector, "angle": 0.9 * vector.get("angle", 0.0) + 7.0}

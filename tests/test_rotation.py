@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from limbik.core.chain import vector
 from limbik.core.goalturn import carried
 from limbik.core.kernels import re_aim
 from limbik.core.kernels import rotation as kernels
 from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb, nearest_form, other_form, wrap
-from limbik.tests.limbs import plain
 
 ANGLE = st.one_of(
     st.floats(-7.0, 7.0), st.sampled_from([0.0, pi, -pi, pi / 2, -pi / 2, pi / 2 - 1e-8, 1e-12])
@@ -62,7 +62,7 @@ def test_other_form_is_the_same_rotation(hpb: tuple[float, float, float]) -> Non
 
 @given(angle=ANGLE)
 def test_wrap_gives_the_same_direction_above_minus_180_up_to_180(angle: float) -> None:
-    for turned in (float(wrap(angle)), plain(kernels.wrap_angle)(angle)):
+    for turned in (float(wrap(angle)), kernels.wrap_angle(angle)):
         assert -pi < turned <= pi
         assert np.cos(turned) == pytest.approx(np.cos(angle), abs=1e-14)
         assert np.sin(turned) == pytest.approx(np.sin(angle), abs=1e-14)
@@ -71,7 +71,7 @@ def test_wrap_gives_the_same_direction_above_minus_180_up_to_180(angle: float) -
 @pytest.mark.parametrize(("angle", "wrapped"), [(pi, pi), (-pi, pi), (3 * pi, pi), (0.5, 0.5)])
 def test_half_turns_wrap_to_plus_180(angle: float, wrapped: float) -> None:
     assert float(wrap(angle)) == pytest.approx(wrapped)
-    assert plain(kernels.wrap_angle)(angle) == pytest.approx(wrapped)
+    assert kernels.wrap_angle(angle) == pytest.approx(wrapped)
 
 
 @given(hpb=HPB, reference=HPB)
@@ -90,18 +90,16 @@ def test_nearest_form_keeps_the_rotation_and_is_nearest(
 def test_kernels_compute_what_the_numpy_face_does(
     hpb: tuple[float, float, float], reference: tuple[float, float, float]
 ) -> None:
-    m = plain(kernels.hpb_to_matrix)(hpb)
+    m = kernels.hpb_to_matrix(hpb)
     np.testing.assert_allclose(m, hpb_to_matrix(hpb), atol=1e-15)
-    np.testing.assert_allclose(
-        hpb_to_matrix(plain(kernels.matrix_to_hpb)(m, reference[2])), m, atol=1e-8
-    )
-    ours = plain(kernels.nearest_form)(hpb, reference)
+    np.testing.assert_allclose(hpb_to_matrix(kernels.matrix_to_hpb(m, reference[2])), m, atol=1e-8)
+    ours = kernels.nearest_form(hpb, reference)
     theirs = nearest_form(hpb, reference)
     assert np.linalg.norm(np.subtract(ours, reference)) == pytest.approx(
         np.linalg.norm(theirs - reference), abs=1e-12
     )
     np.testing.assert_allclose(
-        hpb_to_matrix(plain(kernels.other_form)(hpb)), hpb_to_matrix(hpb), atol=1e-13
+        hpb_to_matrix(kernels.other_form(hpb)), hpb_to_matrix(hpb), atol=1e-13
     )
 
 
@@ -120,7 +118,7 @@ def test_a_turn_given_in_axes_is_carried_by_them(
 def test_upright_angles_keep_the_bank_they_are_given(pitch: float, bank: float) -> None:
     """3D A-62: heading and bank turn about one axis there."""
     m = hpb_to_matrix((0.3, pitch, 0.9))
-    found = plain(kernels.matrix_to_hpb)(m.tolist(), bank)
+    found = kernels.matrix_to_hpb(m.tolist(), bank)
     assert found[2] == bank
     np.testing.assert_allclose(hpb_to_matrix(found), m, atol=1e-12)
 
@@ -129,13 +127,13 @@ def test_upright_angles_keep_the_bank_they_are_given(pitch: float, bank: float) 
 def test_turning_keeps_length_and_the_angle_to_the_axis(
     axis: tuple[float, float, float], v: tuple[float, float, float], angle: float
 ) -> None:
-    unit = plain(kernels.unit)(axis)
-    if not plain(kernels.has_direction)(unit):
+    unit = kernels.unit(axis)
+    if not kernels.has_direction(unit):
         unit = (0.0, 0.0, 1.0)
-    turned = np.array(plain(kernels.turned)(v, unit, angle))
+    turned = np.array(kernels.turned(v, unit, angle))
     assert np.linalg.norm(turned) == pytest.approx(np.linalg.norm(v), abs=1e-12)
     assert turned @ unit == pytest.approx(np.dot(v, unit), abs=1e-12)
-    matrix = np.array(plain(kernels.turn_about)(unit, angle))
+    matrix = np.array(kernels.turn_about(unit, angle))
     np.testing.assert_allclose(matrix @ v, turned, atol=1e-12)
 
 
@@ -143,21 +141,21 @@ def test_turning_keeps_length_and_the_angle_to_the_axis(
 def test_turning_about_their_cross_product_carries_one_vector_to_the_other(
     a: tuple[float, float, float], b: tuple[float, float, float]
 ) -> None:
-    one, other = plain(kernels.unit)(a), plain(kernels.unit)(b)
-    axis = plain(kernels.unit)(plain(kernels.cross)(one, other))
-    if not plain(kernels.has_direction)(axis):
+    one, other = kernels.unit(a), kernels.unit(b)
+    axis = kernels.unit(kernels.cross(one, other))
+    if not kernels.has_direction(axis):
         return
-    angle = plain(kernels.angle_between)(one, other)
-    np.testing.assert_allclose(plain(kernels.turned)(one, axis, angle), other, atol=1e-9)
+    angle = kernels.angle_between(one, other)
+    np.testing.assert_allclose(kernels.turned(one, axis, angle), other, atol=1e-9)
 
 
 @given(v=VECTOR, direction=VECTOR)
 def test_across_is_a_unit_vector_at_a_right_angle_or_zero(
     v: tuple[float, float, float], direction: tuple[float, float, float]
 ) -> None:
-    unit = plain(kernels.unit)(direction)
-    side = np.array(plain(kernels.across)(v, unit))
-    if plain(kernels.has_direction)(unit) and side.any():
+    unit = kernels.unit(direction)
+    side = np.array(kernels.across(v, unit))
+    if kernels.has_direction(unit) and side.any():
         assert np.linalg.norm(side) == pytest.approx(1.0)
         assert abs(side @ unit) < 1e-12
 
@@ -165,7 +163,7 @@ def test_across_is_a_unit_vector_at_a_right_angle_or_zero(
 @pytest.mark.parametrize("small", [1e-3, 1e-8, 1e-12])
 def test_small_angles_between_vectors_keep_their_digits(small: float) -> None:
     """An arc cosine would give 0 below 1e-8 (3D A-32)."""
-    found = plain(kernels.angle_between)((1.0, 0.0, 0.0), (np.cos(small), np.sin(small), 0.0))
+    found = kernels.angle_between((1.0, 0.0, 0.0), (np.cos(small), np.sin(small), 0.0))
     assert found == pytest.approx(small, rel=1e-9)
 
 
@@ -178,10 +176,10 @@ def test_re_aim_stays_in_the_limits_and_never_makes_the_angle_larger(
 ) -> None:
     """3D A-51: what a per-axis clamp cannot promise."""
     pairs = [sorted((data.draw(BOUND), data.draw(BOUND))) for _ in range(3)]
-    low, high = tuple(pair[0] for pair in pairs), tuple(pair[1] for pair in pairs)
-    angles = tuple(data.draw(st.floats(*pair)) for pair in pairs)
-    operating, aim = plain(kernels.unit)(v), plain(kernels.unit)(w)
-    found, turn = plain(re_aim.re_aim)(angles, low, high, operating, aim)
+    low, high = vector([pair[0] for pair in pairs]), vector([pair[1] for pair in pairs])
+    angles = vector([data.draw(st.floats(*pair)) for pair in pairs])
+    operating, aim = kernels.unit(v), kernels.unit(w)
+    found, turn = re_aim.re_aim(angles, low, high, operating, aim)
     np.testing.assert_allclose(turn, hpb_to_matrix(found), atol=1e-15)
     before = np.array(aim) @ hpb_to_matrix(angles) @ operating
     after = np.array(aim) @ hpb_to_matrix(found) @ operating
@@ -195,7 +193,7 @@ def test_nearest_in_range_is_nearest_on_the_circle(
     best: float, current: float, pair: tuple[float, float]
 ) -> None:
     low, high = sorted(pair)
-    found = plain(re_aim.nearest_in_range)(best, current, low, high)
+    found = re_aim.nearest_in_range(best, current, low, high)
     grid = np.linspace(low, high, 500)
     assert low <= found <= high
     assert abs(float(wrap(found - best))) <= np.abs(wrap(grid - best)).min() + 1e-8

@@ -8,7 +8,8 @@ import pytest
 from limbik.core.chain import Chain, Joint
 from limbik.core.errors import InputError
 from limbik.core.frames import Z_UP
-from limbik.plugins.paths.quaternions import double_slerp, from_matrix, slerp, to_matrix
+from limbik.core.rotation import matrix_to_quaternion, quaternion_to_matrix
+from limbik.plugins.paths.quaternions import double_slerp, slerp
 from limbik.trajectory import (
     KeyPoint,
 )
@@ -33,7 +34,7 @@ def test_slerp_is_scipys_for_every_sign() -> None:
         expected = Slerp([0, 1], random[k : k + 2])([0.0, 0.3, 1.0]).as_matrix()
         for sign in (1.0, -1.0):
             found = slerp([0.0, 0.3, 1.0], q[k], sign * q[k + 1])
-            np.testing.assert_allclose(to_matrix(found), expected, atol=1e-12)
+            np.testing.assert_allclose(quaternion_to_matrix(found), expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("convention", ["ZYX", "XYZ", "ZXZ", "xyz", "zyx"])
@@ -89,9 +90,9 @@ def test_a_matrix_that_is_no_pose_is_refused(matrix: Any, word: str) -> None:
 
 
 def test_double_slerp_keeps_the_ends_and_misses_the_middle() -> None:
-    q = [from_matrix(k.rotation) for k in (A, B, C)]
+    q = [matrix_to_quaternion(k.rotation) for k in (A, B, C)]
     found = double_slerp(np.array([0.0, 0.5, 1.0]), *q)
 
-    np.testing.assert_allclose(to_matrix(found[0]), A.rotation, atol=1e-12)
-    np.testing.assert_allclose(to_matrix(found[2]), C.rotation, atol=1e-12)
-    assert np.abs(to_matrix(found[1]) - B.rotation).max() > 0.1
+    np.testing.assert_allclose(quaternion_to_matrix(found[0]), A.rotation, atol=1e-12)
+    np.testing.assert_allclose(quaternion_to_matrix(found[2]), C.rotation, atol=1e-12)
+    assert np.abs(quaternion_to_matrix(found[1]) - B.rotation).max() > 0.1

@@ -93,7 +93,7 @@ def _show(
     metrics: dict[str, dict[str, Any]], pursued: Sequence[bool], output: Path, as_json: bool
 ) -> bool:
     """Show what a motion is like, chain by chain; return whether all goals pursued are reached."""
-    from limbik.plugins.output.records import to_json
+    from limbik.plugins.output.encoding import to_json
     from limbik.plugins.output.table import print_metrics
 
     all_met = (of["reached"] == of["frames"] for of in metrics.values())

@@ -22,7 +22,8 @@ def check(
         from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.errors import Fault, SceneError
         from limbik.core.registry import Registry
-        from limbik.plugins.output.records import check_record, to_json
+        from limbik.plugins.output.encoding import to_json
+        from limbik.plugins.output.records import check_record
 
         registry = Registry()
         faults: list[Fault] = []

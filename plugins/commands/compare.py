@@ -27,20 +27,18 @@ def compare(
         from limbik.core.registry import Registry
         from limbik.core.scene import read_scene
         from limbik.plugins.output import compare as comparing
+        from limbik.plugins.output.encoding import to_json
         from limbik.plugins.output.files import write_whole
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.plot import check_plot, form_of
 
         registry = Registry()
         read = read_scene(scene, registry)
         if plot is not None:
-            from limbik.plugins.output.plot import check_plot
-
             check_plot(plot)
         names = list(dict.fromkeys(filter(None, map(str.strip, solvers.split(",")))))
         found = comparing.compare(read, names, registry)
         if plot is not None:
-            form = plot.suffix.lower().lstrip(".")
-            write_whole(plot, comparing.draw_comparison(found, form))
+            write_whole(plot, comparing.draw_comparison(found, form_of(plot)))
         if as_json:
             typer.echo(to_json(comparing.compare_record(found)))
         else:

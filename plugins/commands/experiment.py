@@ -55,7 +55,7 @@ def run(
         from limbik.plugins.experiments.run import prepare
         from limbik.plugins.experiments.run import run as run_prepared
         from limbik.plugins.output.baking import progress
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
 
         given = {"output": output, "engine": engine, "workers": workers}
         overrides = [read_override(text) for text in settings or ()]
@@ -95,7 +95,7 @@ def report(
     with reported(as_json):
         from limbik.plugins.experiments.report import print_summary, summary_record, write_report
         from limbik.plugins.experiments.summary import summarise
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
 
         summary = summarise(folder)
         written = write_report(summary)
@@ -122,7 +122,7 @@ def list_runs(
     """
     with reported(as_json):
         from limbik.plugins.experiments.listing import print_runs, runs_in
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
 
         found = runs_in(folder)
         if as_json:

@@ -24,7 +24,7 @@ def inspect(
 
         from limbik.core.registry import Registry
         from limbik.plugins.output.baking import inspect_file
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
         from limbik.plugins.output.table import print_inspection
 
         inspection = inspect_file(file, Registry())

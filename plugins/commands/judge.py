@@ -19,7 +19,7 @@ def judge(scene: SceneFile, as_json: AsJson = False) -> None:
         from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.registry import Registry
         from limbik.plugins.judging import report
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
 
         registry = Registry()
         read = read_any(scene, registry)

@@ -15,8 +15,8 @@ def plugins(as_json: AsJson = False) -> None:
     """
     with reported(as_json):
         from limbik.core.registry import Registry
+        from limbik.plugins.output.encoding import to_json
         from limbik.plugins.output.listing import plugin_record
-        from limbik.plugins.output.records import to_json
 
         record = plugin_record(Registry())
         if as_json:

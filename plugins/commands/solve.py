@@ -1,17 +1,12 @@
 """The command `limbik solve`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from limbik.plugins.commands.common import AsJson, SceneFile, announce_compiling, say_notes
 from limbik.plugins.output.failures import reported
-
-if TYPE_CHECKING:
-    from limbik.core.bodyscene import BodyScene
-    from limbik.core.registry import Registry
-    from limbik.core.scene import Scene
 
 
 def solve(
@@ -37,93 +32,31 @@ def solve(
     with reported(as_json):
         from limbik.core.bodyscene import BodyScene, read_any
         from limbik.core.registry import Registry
+        from limbik.plugins.output.bake_servos import servo_profile
+        from limbik.plugins.output.encoding import to_json
+        from limbik.plugins.output.files import write_whole
+        from limbik.plugins.output.plot import check_plot, form_of
+        from limbik.plugins.output.results import BodyResults, ChainResults
 
         registry = Registry()
         read = read_any(scene, registry)
         if plot is not None:
-            from limbik.plugins.output.plot import check_plot
-
             check_plot(plot)
+        profile = servo_profile(servo, read)
+        say_notes(read)
+        announce_compiling()
+        found: BodyResults | ChainResults
         if isinstance(read, BodyScene):
-            met = _solve_body(read, registry, as_json, csv, plot, servo, trace)
+            found = BodyResults(read, registry, trace)
         else:
-            met = _solve_chain(read, registry, as_json, csv, plot, servo, trace)
-        if not met:
+            found = ChainResults(read, registry, trace or plot is not None, profile)
+        if csv is not None:
+            write_whole(csv, found.rows())
+        if plot is not None:
+            write_whole(plot, found.draw(form_of(plot)))
+        if as_json:
+            typer.echo(to_json(found.record(trace)))
+        else:
+            found.show()
+        if not found.met:
             raise SystemExit(1)
-
-
-def _solve_chain(
-    scene: "Scene",
-    registry: "Registry",
-    as_json: bool,
-    csv: Path | None,
-    plot: Path | None,
-    servo: str | None,
-    trace: bool,
-) -> bool:
-    """Solve a scene with one chain; return whether all goals are reached."""
-    from limbik.core.solving import are_met, solve_scene
-    from limbik.plugins.output.files import write_whole
-    from limbik.plugins.output.records import solve_record, solve_rows, to_json
-
-    profile = None
-    if servo is not None:
-        from limbik.plugins.output.servo import read_profile
-
-        profile = read_profile(servo, scene.chain)
-    say_notes(scene)
-    announce_compiling()
-    solutions = solve_scene(scene, registry, trace or plot is not None)
-    poses = [] if profile is None else profile.quantise_all(scene.goal_names, solutions)
-    if csv is not None:
-        write_whole(csv, solve_rows(scene, solutions))
-    if plot is not None:
-        from limbik.plugins.output.plot import draw
-
-        write_whole(plot, draw(scene, solutions, plot.suffix.lower().lstrip(".")))
-    if as_json:
-        typer.echo(to_json(solve_record(scene, solutions, stages=trace, servos=poses)))
-    else:
-        from limbik.plugins.output.table import print_servos, print_solutions
-
-        print_solutions(scene, solutions)
-        print_servos(scene, poses)
-    return are_met(scene, solutions)
-
-
-def _solve_body(
-    scene: "BodyScene",
-    registry: "Registry",
-    as_json: bool,
-    csv: Path | None,
-    plot: Path | None,
-    servo: str | None,
-    trace: bool,
-) -> bool:
-    """Solve a scene with several chains; return whether all goals are reached."""
-    from limbik.core.baking import stacked
-    from limbik.core.body import bodies_met, chain_solutions, solve_body
-    from limbik.core.errors import Fault, InputError
-    from limbik.plugins.formats.bodytables import body_rows
-    from limbik.plugins.output.files import write_whole
-    from limbik.plugins.output.records import body_record, to_json
-
-    if servo is not None:
-        raise InputError(Fault("chains", "needs a scene with one chain", "--servo"))
-    say_notes(scene)
-    announce_compiling()
-    found = solve_body(scene, registry, trace)
-    if csv is not None:
-        chains = {name: stacked(of) for name, of in chain_solutions(found).items()}
-        write_whole(csv, body_rows(scene.frame_names, chains))
-    if plot is not None:
-        from limbik.plugins.output.plotbody import draw_body
-
-        write_whole(plot, draw_body(scene, found, plot.suffix.lower().lstrip(".")))
-    if as_json:
-        typer.echo(to_json(body_record(scene, found, stages=trace)))
-    else:
-        from limbik.plugins.output.table import print_body
-
-        print_body(scene, found)
-    return bodies_met(scene, found)

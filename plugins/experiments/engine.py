@@ -1,53 +1,87 @@
 """Where batches are solved: in this process, on all cores, or on a Dask cluster that is there."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 from limbik.core.errors import EnvironmentProblem, LimbikError
 from limbik.plugins.experiments import guard
-from limbik.plugins.experiments.batch import Job, Part, run_batch
+from limbik.plugins.experiments.batch import Job, run_batch
+from limbik.plugins.experiments.folder import Folder
 from limbik.plugins.experiments.identity import versions
 from limbik.plugins.experiments.model import DASK, LOCAL, SERIAL
+from limbik.plugins.experiments.plan import Batch
 
 CONNECT = 5.0  # seconds a scheduler has to answer
+Found = TypeVar("Found")
 
 
 class WorkerLost(Exception):
     """A worker process was ended from outside; what it had not finished can be done again."""
 
 
+class Done(NamedTuple):
+    """A batch whose part is kept, and how many of its solves failed."""
+
+    batch: Batch
+    failed: int
+
+
 def run_jobs(
-    engine: str, jobs: Iterable[Job], workers: int | None, here: Mapping[str, str]
-) -> Iterator[Part]:
-    """Solve jobs and give their parts as they are ready, in no order.
+    engine: str,
+    jobs: Iterable[Job],
+    folder: Folder,
+    workers: int | None,
+    here: Mapping[str, str],
+) -> Iterator[Done]:
+    """Solve jobs, keep their parts in a folder and tell of each as it is there, in no order.
 
     Args:
         engine: `serial`, `local` or `dask://HOST:PORT`.
         jobs: What is to be solved; taken only as fast as it is.
+        folder: Of the run.
         workers: Processes of the engine `local`; None for as many as there are cores.
         here: Versions that a cluster's workers must have too.
 
     Raises:
         WorkerLost: A worker was killed.
-        EnvironmentProblem: The scheduler does not answer, or its workers are of another version.
+        EnvironmentProblem: The scheduler does not answer, or its workers are of another version;
+            the folder is full or not writable.
     """
     if engine == SERIAL:
-        yield from map(run_batch, jobs)
+        yield from (_keep(job, folder) for job in jobs)
     elif engine == LOCAL:
-        yield from _parallel(jobs, workers or os.cpu_count() or 1, backend="loky")
+        # A worker killed while it sends leaves the others waiting forever, so it keeps its part
+        # itself and sends next to nothing.
+        task = partial(_keep_guarded, folder=folder, parent=os.getpid())
+        yield from _parallel(task, jobs, workers or os.cpu_count() or 1, backend="loky")
     else:
         with _cluster(engine.removeprefix(DASK), here) as count:
-            yield from _parallel(jobs, count)
+            for part in _parallel(run_batch, jobs, count):
+                folder.keep(part.batch, part.content)
+                yield Done(part.batch, part.failed)
 
 
-def _parallel(jobs: Iterable[Job], workers: int, **backend: Any) -> Iterator[Part]:
-    """Solve jobs through joblib, a few for each worker ahead."""
+def _keep(job: Job, folder: Folder) -> Done:
+    part = run_batch(job)
+    folder.keep(part.batch, part.content)
+    return Done(part.batch, part.failed)
+
+
+def _keep_guarded(job: Job, folder: Folder, parent: int) -> Done:
+    guard.watch(parent)
+    return _keep(job, folder)
+
+
+def _parallel(
+    task: Callable[[Job], Found], jobs: Iterable[Job], workers: int, **backend: Any
+) -> Iterator[Found]:
+    """Do something with jobs through joblib, a few for each worker ahead."""
     from joblib import Parallel, delayed
     from joblib.externals.loky.process_executor import BrokenProcessPool
 
-    local = bool(backend)
     pool = Parallel(
         n_jobs=workers,
         batch_size=1,
@@ -56,17 +90,10 @@ def _parallel(jobs: Iterable[Job], workers: int, **backend: Any) -> Iterator[Par
         max_nbytes=None,  # no arrays in shared memory: a killed run would leave them there
         **backend,
     )
-    task = delayed(_guarded if local else run_batch)
-    arguments = (os.getpid(),) if local else ()
     try:
-        yield from pool(task(job, *arguments) for job in jobs)
+        yield from pool(delayed(task)(job) for job in jobs)
     except BrokenProcessPool as error:
         raise WorkerLost from error
-
-
-def _guarded(job: Job, parent: int) -> Part:
-    guard.watch(parent)
-    return run_batch(job)
 
 
 @contextmanager

@@ -37,6 +37,6 @@ def estimate(prepared: Run) -> Estimate:
         goals = trial.goal_set.goals.part(0, count).positions(trial.scene.chain)
         table = solve_rows(trial, Piece(trial.number, 0, count), goals)
         costs.append(float(table["us"][0]) / len(trial.scene.chain))
-    posed = sum(trial.count * len(trial.scene.chain) for trial in trials)
+    posed = sum(trial.posed for trial in trials)
     rows = sum(batch.rows for batch in prepared.batches if batch.table == SOLVES)
     return Estimate(1e-6 * float(np.mean(costs)) * posed, ROW * rows)

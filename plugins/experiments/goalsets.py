@@ -12,7 +12,7 @@ from zlib import crc32
 import numpy as np
 
 from limbik.core.chain import Chain
-from limbik.core.pose import forward_kinematics
+from limbik.core.pose import forward_kinematics, spread_poses
 from limbik.core.reach import reach_range
 from limbik.core.rotation import Array
 
@@ -65,8 +65,7 @@ def seed_of(seed: int, name: str, repeat: int) -> tuple[int, int, int]:
 
 def _by_joints(chain: Chain, drawn: Array) -> Array:
     """Put the end where angles within the limits put it."""
-    low, high = np.maximum(chain.low, -np.pi), np.minimum(chain.high, np.pi)
-    angles = low + drawn.reshape(len(drawn), len(chain), 3) * (high - low)
+    angles = spread_poses(chain, drawn.reshape(len(drawn), len(chain), 3))
     return np.ascontiguousarray(forward_kinematics(chain, angles)[0][:, -1])
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from limbik import __version__
+from limbik.core.cache import digest
 from limbik.core.errors import key_text
 from limbik.core.scene import Scene
 from limbik.plugins.experiments.goalsets import Points
@@ -64,7 +65,7 @@ def _version(name: str) -> str:
 def fingerprint(content: dict[str, Any], of: dict[str, str]) -> str:
     """Shorten contents and versions to 16 hexadecimal digits."""
     text = json.dumps([content, of], sort_keys=True, ensure_ascii=False)
-    return sha256(text.encode()).hexdigest()[:16]
+    return digest(text)
 
 
 def differences(old: Any, new: Any, path: tuple[str | int, ...] = ()) -> Iterator[str]:

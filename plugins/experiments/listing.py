@@ -3,14 +3,11 @@
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from limbik.core.errors import Fault, InputError
 from limbik.plugins.experiments.folder import MANIFEST, read_manifest
 from limbik.plugins.experiments.plan import PATHS, SOLVES
 from limbik.plugins.experiments.summary import parts_of
-from limbik.plugins.output.table import new_console
+from limbik.plugins.output.table import new_console, new_table
 
 
 def runs_in(folder: Path) -> list[dict[str, Any]]:
@@ -50,9 +47,8 @@ def print_runs(folder: Path, runs: list[dict[str, Any]]) -> None:
     if not runs:
         console.print(f"no runs in {folder}")
         return
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for title in ("folder", "started", "trials", "solves", "parts", "fingerprint"):
-        table.add_column(title, justify="right" if title in ("trials", "solves") else "left")
+    titles = ("folder", "started", "trials", "solves", "parts", "fingerprint")
+    table = new_table(*titles, right=("trials", "solves"))
     for run in runs:
         done = "all" if run["parts"] == run["planned"] else f"{run['parts']} of {run['planned']}"
         cells = (run["folder"], run["started"][:16], run["trials"], run["solves"], done)

@@ -31,7 +31,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from limbik.core.scenemodel import Name, check_version
-from limbik.core.settings import Model
+from limbik.core.settings import Model, list_as_tuple
 from limbik.core.wording import found_words
 
 MOST_GOALS = 1_000_000_000
@@ -44,10 +44,6 @@ Value = bool | int | float | str
 def _values(value: Any) -> Any:
     """Let one value stand for a list of one."""
     return [value] if isinstance(value, Value) else value
-
-
-def _triple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
 
 
 def engine_name(text: str) -> str:
@@ -63,7 +59,7 @@ def engine_name(text: str) -> str:
 
 
 Share = Annotated[float, Field(ge=-10.0, le=10.0)]
-Shares = Annotated[tuple[Share, Share, Share], BeforeValidator(_triple)]
+Shares = Annotated[tuple[Share, Share, Share], BeforeValidator(list_as_tuple)]
 Steps = Annotated[int, Field(ge=1, le=100_000)]
 Sweep = dict[str, Annotated[list[Any], BeforeValidator(_values), Field(min_length=1)]]
 Engine = Annotated[str, AfterValidator(engine_name)]
@@ -126,7 +122,7 @@ class GridModel(GoalSetModel):
 
     kind: Literal["grid"]
     steps: Annotated[
-        Annotated[tuple[Steps, Steps, Steps], BeforeValidator(_triple)],
+        Annotated[tuple[Steps, Steps, Steps], BeforeValidator(list_as_tuple)],
         Field(description="goals along x, y and z"),
     ]
     low: Annotated[Shares, Field(description="one corner [chain lengths]")] = (-1.0, -1.0, -1.0)

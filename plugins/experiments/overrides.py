@@ -83,7 +83,7 @@ def blame(faults: Sequence[Fault], overrides: Sequence[Override]) -> list[Fault]
 
     def blamed(fault: Fault) -> Fault:
         for override in overrides:
-            key = key_text([str(p) if not isinstance(p, int) else p for p in override.path])
+            key = key_text(override.path)
             if fault.key == key or fault.key.startswith((f"{key}.", f"{key}[")):
                 return replace(fault, file=override.text, line=0, column=0)
         return fault

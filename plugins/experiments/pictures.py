@@ -2,18 +2,17 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from math import isfinite
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from limbik.core.goals import PLACE
 from limbik.core.rotation import Array
-from limbik.plugins.experiments.summary import AXES, Row, Summary, View
-from limbik.plugins.judging.catalogue import BY_NAME
+from limbik.plugins.experiments.summary import Row, Summary, View, metric_title
 from limbik.plugins.output.compare import COLOURS
-from limbik.plugins.output.plot import FAINT, INK, LOOK, PAPER
+from limbik.plugins.output.plot import FAINT, INK, LOOK, new_figure, picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,27 +53,13 @@ def pictures(summary: Summary) -> list[Picture]:
                 continue
             name = "".join(c if c.isalnum() or c in "-_" else "-" for c in f"{chain}-{goals}")
             figure = _bars(solved, summary.metrics)
-            drawn.append(Picture(name, (chain, goals), "the variants compared", _png(figure)))
+            content = picture(figure, "png", dpi=120)
+            drawn.append(Picture(name, (chain, goals), "the variants compared", content))
             if not solved[0].is_path:
                 figure = _maps(solved, summary.views[chain, goals])
-                title = "where goals were reached"
-                drawn.append(Picture(f"{name}-map", (chain, goals), title, _png(figure)))
+                title, content = "where goals were reached", picture(figure, "png", dpi=120)
+                drawn.append(Picture(f"{name}-map", (chain, goals), title, content))
     return drawn
-
-
-def _png(figure: "Figure") -> bytes:
-    content = BytesIO()
-    figure.savefig(content, format="png", dpi=120)
-    return content.getvalue()
-
-
-def _canvas(width: float, height: float) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def best(rows: Sequence[Row], most: int) -> list[Row]:
@@ -93,16 +78,15 @@ def _bars(rows: Sequence[Row], metrics: Sequence[str]) -> "Figure":
         ("time of a solve [µs]", lambda row: row.time),
     ]
     for name in metrics:
-        unit = f" [{BY_NAME[name].unit}]" if name in BY_NAME and BY_NAME[name].unit else ""
         if any(isfinite(row.metric(name)) for row in shown):
-            panels.append((f"{name}{unit}", lambda row, name=name: row.metric(name)))  # type: ignore[misc]
+            panels.append((metric_title(name), lambda row, name=name: row.metric(name)))  # type: ignore[misc]
     names = [_cut(row.label) for row in shown]
     margin = 0.3 + 0.068 * max(map(len, names))
     columns = min(len(panels), 4)
     lines = -(-len(panels) // columns)
     each = 0.9 + 0.24 * len(shown)
     width, height = margin + 2.3 * columns + 0.2, lines * each + 0.35
-    figure = _canvas(width, height)
+    figure = new_figure(width, height)
     colours = _colours(rows)
     for index, (title, value) in enumerate(panels):
         axes: Any = figure.add_subplot(lines, columns, index + 1)
@@ -182,7 +166,7 @@ def _maps(rows: Sequence[Row], view: View) -> "Figure":
     size = view.high - view.low
     tall = 2.3 * min(float(size[1] / size[0]), 2.5)
     width, height = 2.45 * columns + 1.3, (tall + 0.5) * lines + 0.5
-    figure = _canvas(max(width, 4.5), height)
+    figure = new_figure(max(width, 4.5), height)
     extent = (view.low[0], view.high[0], view.low[1], view.high[1])
     coarse = 1 if rows[0].steps else _coarseness(shown)
     image = None
@@ -204,7 +188,7 @@ def _maps(rows: Sequence[Row], view: View) -> "Figure":
     bar: Any = figure.colorbar(image, cax=bar_axes)  # type: ignore[arg-type]
     bar.set_label("goals reached in a cell [%]", fontsize=7.5, color=INK)
     bar.ax.tick_params(labelsize=7, length=0)
-    first, second = (AXES[axis] for axis in view.axes)
+    first, second = (PLACE[axis] for axis in view.axes)
     note = f"{first} to the right, {second} up [length]; grey: no goals."
     if len(shown) < len(rows):
         note += f" The best {len(shown)} of {len(rows)} variants."

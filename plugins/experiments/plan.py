@@ -73,7 +73,7 @@ def plan(trials: Sequence[Trial], goals: int | None, measured: bool) -> list[Bat
         goals: Most goals of a batch; None for as many as take about half a second.
         measured: Whether metrics are measured, a batch for each trial's whole goal set.
     """
-    total = sum(trial.count * len(trial.scene.chain) for trial in trials)
+    total = sum(trial.posed for trial in trials)
     most = min(max(total // PARTS, LEAST_JOINTS), MOST_JOINTS)
     batches: list[Batch] = []
     held: list[Piece] = []

@@ -13,6 +13,7 @@ from limbik.core.errors import Fault, InputError, SceneError, shortlist
 from limbik.core.goals import read_goals
 from limbik.core.registry import Registry
 from limbik.core.scene import Scene, read_scene
+from limbik.core.scenegoals import twice
 from limbik.core.validation import validation_faults
 from limbik.core.wording import near_match
 from limbik.core.yamlfile import Document, KeyPath, read_yaml_file
@@ -124,14 +125,8 @@ def _set_name(goals: GoalsModel) -> str:
 
 
 def _twice(names: list[str], key: str, what: str, document: Document) -> Iterator[Fault]:
-    first: dict[str, int] = {}
-    for index, name in enumerate(names):
-        if name in first:
-            line, _ = document.position((key, first[name]))
-            message = f"the {what} '{name}' is given twice, first at line {line}"
-            hint = "give it a name of its own with 'name'"
-            yield document.fault("duplicate-name", message, (key, index), hint=hint)
-        first.setdefault(name, index)
+    hint = "give it a name of its own with 'name'"
+    return twice(names, (key,), what, document, inside=(), hint=hint)
 
 
 def _metric_faults(model: ExperimentModel, document: Document) -> Iterator[Fault]:
@@ -168,10 +163,7 @@ def _scenes(
         try:
             scenes[name] = read_scene(folder / chain.scene, registry)
         except InputError as error:
-            for fault in error.faults:
-                message = f"{fault.file}: {fault.message}"
-                here = document.fault(fault.code, message, ("chains", index))
-                faults.append(fault if fault.line else here)
+            faults += [document.placed(fault, ("chains", index)) for fault in error.faults]
     return scenes, faults
 
 
@@ -213,12 +205,7 @@ def _path(name: str, points: Points, goals: Any) -> GoalSet:
 
 def _csv(name: str, number: int, document: Document, folder: Path) -> tuple[Points, list[Fault]]:
     table = read_goals(folder / name, str(folder / name))
-    faults = [
-        fault
-        if fault.line
-        else document.fault(fault.code, f"{fault.file}: {fault.message}", ("goals", number, "csv"))
-        for fault in table.faults
-    ]
+    faults = [document.placed(fault, ("goals", number, "csv")) for fault in table.faults]
     return Points(table.positions), faults
 
 

@@ -8,15 +8,13 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from limbik.plugins.experiments.pictures import Picture, pictures
-from limbik.plugins.experiments.summary import Row, Summary
+from limbik.plugins.experiments.summary import Row, Summary, metric_title
 from limbik.plugins.judging.catalogue import BY_NAME
 from limbik.plugins.output.files import write_whole
-from limbik.plugins.output.table import new_console
+from limbik.plugins.output.table import new_console, new_table
 
 PAGE = "report.html"
 _STYLE = """
@@ -58,14 +56,13 @@ def columns(summary: Summary, rows: Sequence[Row]) -> list[tuple[str, list[float
         ("miss p50 [% L]", [row.miss[0] for row in rows], False),
         ("p95", [row.miss[1] for row in rows], False),
         ("max", [row.miss[2] for row in rows], False),
-        ("rounds", [row.rounds / max(row.count, 1) for row in rows], False),
+        ("rounds", [row.mean_rounds for row in rows], False),
         ("time [µs]", [row.time for row in rows], False),
     ]
     for name in summary.metrics:
-        unit = f" [{BY_NAME[name].unit}]" if name in BY_NAME and BY_NAME[name].unit else ""
         values = [row.metric(name) for row in rows]
         if any(map(isfinite, values)):
-            found.append((f"{name}{unit}", values, False))
+            found.append((metric_title(name), values, False))
     return found
 
 
@@ -74,7 +71,7 @@ def print_summary(summary: Summary) -> None:
     console = new_console()
     for chain, goals, rows in summary.groups():
         console.print(Text(f"{chain}, {goals}: {_goals(rows)}", "bold"))
-        table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+        table = new_table()
         table.add_column("variant", no_wrap=True)
         shown = columns(summary, rows)
         for title, _, _ in shown:
@@ -118,7 +115,7 @@ def _record(row: Row, metrics: Sequence[str]) -> dict[str, Any]:
         "miss_p50": half,
         "miss_p95": most,
         "miss_max": largest,
-        "rounds": row.rounds / max(row.count, 1),
+        "rounds": row.mean_rounds,
         "us": row.time,
         "metrics": {name: row.metric(name) for name in metrics},
     }

@@ -10,7 +10,7 @@ from typing import Any
 from limbik.core.errors import EnvironmentProblem
 from limbik.core.jit import is_compiled_before
 from limbik.plugins.experiments.batch import Job, solve_rows
-from limbik.plugins.experiments.engine import WorkerLost, run_jobs
+from limbik.plugins.experiments.engine import Done, WorkerLost, run_jobs
 from limbik.plugins.experiments.folder import Folder, opened
 from limbik.plugins.experiments.identity import contents, fingerprint, versions
 from limbik.plugins.experiments.labels import label_columns
@@ -46,7 +46,7 @@ class Run:
     @property
     def engine(self) -> str:
         """The engine asked for; without one `serial` for a small experiment."""
-        posed = sum(trial.count * len(trial.scene.chain) for trial in self.experiment.trials)
+        posed = sum(trial.posed for trial in self.experiment.trials)
         return self.experiment.model.engine or (SERIAL if posed <= SMALL else LOCAL)
 
     @property
@@ -148,7 +148,7 @@ def _compile(trials: Sequence[Trial]) -> None:
         solve_rows(trial, Piece(trial.number, 0, 1), goal)
 
 
-def _solved(prepared: Run, folder: Folder, missing: Sequence[Batch]) -> Iterator[tuple[Batch, int]]:
+def _solved(prepared: Run, folder: Folder, missing: Sequence[Batch]) -> Iterator[Done]:
     """Solve batches and keep their parts; a batch whose worker was killed is solved again."""
     waiting = {(batch.table, batch.number): batch for batch in missing}
     workers = prepared.experiment.model.workers
@@ -157,11 +157,11 @@ def _solved(prepared: Run, folder: Folder, missing: Sequence[Batch]) -> Iterator
         most = min(workers or os.cpu_count() or 1, len(waiting))
         jobs = _jobs(prepared, list(waiting.values()), folder.form)
         try:
-            for part in run_jobs(prepared.engine, jobs, most, prepared.manifest["versions"]):
-                folder.keep(part.batch, part.content)
-                del waiting[part.batch.table, part.batch.number]
+            here = prepared.manifest["versions"]
+            for done in run_jobs(prepared.engine, jobs, folder, most, here):
+                del waiting[done.batch.table, done.batch.number]
                 losses = 0
-                yield part.batch, part.failed
+                yield done
         except WorkerLost:
             losses += 1
             if losses == MOST_LOSSES:

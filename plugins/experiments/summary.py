@@ -11,15 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from limbik.core.goals import PLACE
 from limbik.core.rotation import Array
 from limbik.core.solution import Status
 from limbik.plugins.experiments.folder import read_manifest
 from limbik.plugins.experiments.plan import PATHS, SOLVES
 from limbik.plugins.experiments.table import FAILED, decode, require_reader
+from limbik.plugins.judging.catalogue import BY_NAME
+from limbik.plugins.output.plot import seen_axes
 
 CELLS = 48  # of the map of the reach, along each side
 SURE = 1.959964  # standard deviations of a 95 % interval
-AXES = ("x", "y", "z")
 
 
 @dataclass
@@ -85,6 +87,11 @@ class Row:
         return half, most, largest
 
     @property
+    def mean_rounds(self) -> float:
+        """Mean of the rounds of a solve."""
+        return self.rounds / max(self.count, 1)
+
+    @property
     def time(self) -> float:
         """Mean time of a solve [µs]."""
         return self.microseconds / self.count if self.count else float("nan")
@@ -113,7 +120,7 @@ class View:
 
     def cell(self, part: dict[str, Array]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the cells of goals, two indices (m,) each."""
-        at = np.stack([part[AXES[axis]] for axis in self.axes], axis=1)
+        at = np.stack([part[PLACE[axis]] for axis in self.axes], axis=1)
         share = (at - self.low) / (self.high - self.low)
         found = np.clip(share * self.cells, 0, np.array(self.cells) - 1).astype(np.int64)
         return found[:, 0], found[:, 1]
@@ -146,6 +153,12 @@ class Summary:
         """Give chain, goal set and rows that belong together: the same goals for all."""
         for chain, goals in dict.fromkeys((row.chain, row.goals) for row in self.rows):
             yield chain, goals, [r for r in self.rows if (r.chain, r.goals) == (chain, goals)]
+
+
+def metric_title(name: str) -> str:
+    """Return a metric's name with its unit, if it has one."""
+    unit = BY_NAME[name].unit if name in BY_NAME else ""
+    return f"{name} [{unit}]" if unit else name
 
 
 def summarise(folder: Path) -> Summary:
@@ -187,8 +200,8 @@ def _views(parts: Sequence[Path], by_trial: Sequence[Row]) -> dict[tuple[str, st
     bounds: dict[tuple[str, str], tuple[Array, Array]] = {}
     steps = {}
     for path in parts:
-        part = decode(path, ("trial", *AXES))
-        points = np.stack([part[axis] for axis in AXES], axis=1)
+        part = decode(path, ("trial", *PLACE))
+        points = np.stack([part[axis] for axis in PLACE], axis=1)
         for trial in np.unique(part["trial"]).tolist():
             own = points[part["trial"] == trial]
             low, high = own.min(axis=0), own.max(axis=0)
@@ -201,8 +214,7 @@ def _views(parts: Sequence[Path], by_trial: Sequence[Row]) -> dict[tuple[str, st
 
 
 def _view(low: Array, high: Array, steps: tuple[int, int, int] | None) -> View:
-    flat = int(np.argmin(high - low + np.array([0.0, 1e-9, 0.0])))
-    axes = {0: (2, 1), 1: (0, 2), 2: (0, 1)}[flat]
+    axes = seen_axes(high - low)
     low, high = low[list(axes)], high[list(axes)]
     if steps is not None and max(steps[axis] for axis in axes) <= 2 * CELLS:
         cells = np.array([steps[axis] for axis in axes])  # a cell a goal, the goal in its middle
@@ -214,7 +226,7 @@ def _view(low: Array, high: Array, steps: tuple[int, int, int] | None) -> View:
 
 
 def _add_solves(path: Path, by_trial: Sequence[Row], views: dict[tuple[str, str], View]) -> None:
-    columns = ("trial", *AXES, "status", "iterations", "distance", "us")
+    columns = ("trial", *PLACE, "status", "iterations", "distance", "us")
     part = decode(path, columns)
     for trial in np.unique(part["trial"]).tolist():
         own = {name: part[name][part["trial"] == trial] for name in columns}

@@ -4,7 +4,6 @@ import json
 import zlib
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
-from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 from zipfile import BadZipFile
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from limbik.core.errors import EnvironmentProblem
 from limbik.core.solution import Status
+from limbik.plugins.output.encoding import npz_bytes
 
 PARQUET: Final = "parquet"
 NPZ: Final = "npz"
@@ -58,10 +58,7 @@ def encode(
         form: `parquet` or `npz`.
     """
     if form == NPZ:
-        stream = BytesIO()
-        columns: dict[str, Any] = {**table, STAMP: np.array(json.dumps(stamp))}
-        np.savez_compressed(stream, **columns)
-        return stream.getvalue()
+        return npz_bytes({**table, STAMP: np.array(json.dumps(stamp))})
     import pyarrow as pa
     from pyarrow import parquet
 

@@ -67,6 +67,11 @@ class Trial:
         """How many goals there are."""
         return len(self.goal_set.goals)
 
+    @property
+    def posed(self) -> int:
+        """How many joints all its solves pose, which is what they cost."""
+        return self.count * len(self.scene.chain)
+
     def without_goals(self) -> "Trial":
         """Return the trial with no goals, to be sent elsewhere with some of them."""
         return replace(self, goal_set=replace(self.goal_set, goals=Points(np.zeros((0, 3)))))

@@ -3,21 +3,19 @@
 What is a chain's own stands under the chain's name; positions are those of the whole skeleton.
 """
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from limbik.core.chain import AXES
 from limbik.core.formats import BodyBake, Values
 from limbik.core.frames import Y_UP
 from limbik.core.goals import PLACE, TURN
 from limbik.core.mirror import side_swapped
 from limbik.core.rotation import Array
-from limbik.core.solution import Solution, Status
-from limbik.plugins.formats.goalturns import turn_cells, turn_quaternions, turn_record
+from limbik.core.solution import Solution
+from limbik.plugins.formats.columns import labels, solution_arrays, solution_record, turn_cells
+from limbik.plugins.output.encoding import csv_text, npz_bytes, to_json
 
 
 def body_rows(
@@ -40,27 +38,17 @@ def body_rows(
     columns: list[list[Any]] = [list(names), *([] if times is None else [list(times)])]
     for chain, solution in solutions.items():
         angles = np.degrees(solution.angles).reshape(len(names), -1)
-        joints = [f"{joint} {axis}" for joint in solution.chain.names for axis in AXES]
         own = (values or {}).get(chain)
         model = [f"{name} [{own.unit}]" for name in own.names] if own else []
         turns = (goal_turns or {}).get(chain)
         titles = [*PLACE, *(() if turns is None else TURN), "status", "distance", "iterations"]
-        head += [f"{chain}: {title}" for title in (*titles, *joints, *model)]
+        head += [f"{chain}: {title}" for title in (*titles, *solution.chain.axis_names, *model)]
         columns += solution.goal.T.tolist()
         columns += map(list, zip(*turn_cells(turns, len(names)), strict=True))
         columns += [labels(solution), np.asarray(solution.distance).tolist()]
         columns += [np.asarray(solution.iterations).tolist(), *angles.T.tolist()]
         columns += own.rows.T.tolist() if own else []
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(zip(*columns, strict=True))
-    return text.getvalue()
-
-
-def labels(solution: Solution) -> list[str]:
-    """Give the status of every goal as a word."""
-    return [Status(int(status)).label for status in np.asarray(solution.status)]
+    return csv_text(head, zip(*columns, strict=True))
 
 
 def _values(bake: BodyBake) -> dict[str, Values]:
@@ -88,26 +76,15 @@ def write_body_csv(bake: BodyBake) -> str:
 
 def write_body_json(bake: BodyBake) -> str:
     """Write one JSON object: the skeleton's positions, and the columns of each chain."""
-    from limbik.plugins.output.records import to_json
-
     names, positions, _ = _world(bake)
     values = _values(bake)
-    chains = {}
-    for name, solution in bake.solutions.items():
-        chains[name] = {
-            "joints": list(solution.chain.names),
+    chains = {
+        name: {
             "metrics": bake.metrics[name],
-            "goals": solution.goal.tolist(),
-            "status": labels(solution),
-            "distance": np.asarray(solution.distance).tolist(),
-            "iterations": np.asarray(solution.iterations).tolist(),
-            "angles": np.degrees(solution.angles).tolist(),
+            **solution_record(solution, bake.goal_turns.get(name), values.get(name)),
         }
-        if name in bake.goal_turns:
-            chains[name]["goal_rotations"] = turn_record(bake.goal_turns[name])
-        if own := values.get(name):
-            rows = {"names": list(own.names), "unit": own.unit, "rows": own.rows.tolist()}
-            chains[name]["model_values"] = rows
+        for name, solution in bake.solutions.items()
+    }
     record = {
         "scene": bake.scene.document.name,
         "mirrored": bake.mirrored,
@@ -133,21 +110,8 @@ def write_body_npz(bake: BodyBake) -> bytes:
         "rotations": rotations,
         "chains": np.array(list(bake.solutions)),
     }
+    values = _values(bake)
     for name, solution in bake.solutions.items():
-        own = {
-            "joints": np.array(solution.chain.names),
-            "goals": solution.goal,
-            "angles": solution.angles,
-            "status": np.asarray(solution.status),
-            "distance": np.asarray(solution.distance),
-            "iterations": np.asarray(solution.iterations),
-        }
-        if name in bake.goal_turns:
-            own["quaternions"] = turn_quaternions(bake.goal_turns[name])
+        own = solution_arrays(solution, bake.goal_turns.get(name), values.get(name))
         arrays |= {f"{name}/{key}": array for key, array in own.items()}
-    for name, values in _values(bake).items():
-        arrays[f"{name}/model_names"] = np.array(values.names)
-        arrays[f"{name}/model_values"] = values.rows
-    content = io.BytesIO()
-    np.savez_compressed(content, **arrays)
-    return content.getvalue()
+    return npz_bytes(arrays)

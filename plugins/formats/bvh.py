@@ -15,12 +15,12 @@ import numpy as np
 from limbik.core.errors import Fault, InputError
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import FARTHEST
+from limbik.core.yamlscalars import looks_like_number
 from limbik.plugins.formats.markup import read_bounded
 
 MOST_BYTES: Final = 64_000_000
 MOST_JOINTS: Final = 2_000
 MOST_DEPTH: Final = 256
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _CHANNEL = re.compile(r"([xyz])(position|rotation)", re.IGNORECASE)
 
 
@@ -212,7 +212,7 @@ class _Reader:
 
     def _number(self, expected: str) -> float:
         word = self._word(expected)
-        if not _NUMBER.fullmatch(word):
+        if not looks_like_number(word):
             raise self._fault("number", f"not a number: '{word[:40]}'")
         value = float(word)
         if abs(value) > FARTHEST:
@@ -286,7 +286,7 @@ class _Reader:
             words = row.split()
             for found in re.finditer(r"\S+", row):
                 place = (number, found.start() + 1)
-                if not _NUMBER.fullmatch(found.group()):
+                if not looks_like_number(found.group()):
                     return self._fault("number", f"not a number: '{found.group()[:40]}'", place)
                 if abs(float(found.group())) > FARTHEST:
                     return self._fault("range", f"must be at most {FARTHEST:g} in size", place)

@@ -11,7 +11,7 @@ Y takes knees and elbows forward.
 The file states no unit; `scale` makes its lengths the scene's.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -26,7 +26,8 @@ from limbik.core.formats import Body, Inspection, Motion
 from limbik.core.frames import Y_UP
 from limbik.core.rotation import Array, matrix_to_hpb
 from limbik.core.settings import Model
-from limbik.core.wording import found_words, near_match
+from limbik.core.skeleton import way_down
+from limbik.core.wording import found_words
 from limbik.plugins.formats.bvh import BvhJoint, Clip, read_bvh
 from limbik.plugins.formats.bvh_motion import clip_motion, joint_offsets
 from limbik.plugins.formats.channels import matrix_to_channels
@@ -124,12 +125,10 @@ def read_body(model: BvhModel, folder: Path) -> ClipBody:
         InputError: The file is at fault, or there is no such chain in it.
     """
     clip = read_bvh(folder / model.bvh)
-    at = _between(clip, model.base, model.end)
+    parents = [joint.parent for joint in clip.joints]
+    at = way_down(clip.names, parents, model.base, model.end, "clip")
     clip, numbers = chosen(clip, model)
-    faults = [fault for k, index in enumerate(at[1:], 1) for fault in slides(clip, index, k)]
-    faults += [fault for index in at[:-1] for fault in refusals(clip, index)]
-    if faults:
-        raise InputError(faults)
+    refuse(clip, at)
     offsets = [lasting_offset(clip, index) * model.scale for index in at]
     offsets[0] = np.zeros(3)
     models = [
@@ -151,26 +150,6 @@ def read_body(model: BvhModel, folder: Path) -> ClipBody:
     )
 
 
-def _between(clip: Clip, base: str, end: str) -> list[int]:
-    """Give the indices of the joints from one down to another."""
-    names = clip.names
-    faults = []
-    for key, name in (("base", base), ("end", end)):
-        if name not in names:
-            hint = near_match(name, names) or f"joints: {', '.join(names[:12])}"
-            faults.append(Fault("unknown-joint", f"the clip has no joint '{name}'", key, hint=hint))
-    if faults:
-        raise InputError(faults)
-    way = [names.index(end)]
-    while clip.joints[way[-1]].parent >= 0:
-        way.append(clip.joints[way[-1]].parent)
-    if names.index(base) not in way[1:]:
-        above = ", ".join(names[index] for index in way[1:13]) or "nothing, it is a root"
-        message = f"the joint '{end}' does not hang from '{base}'"
-        raise InputError(Fault("chain", message, "base", hint=f"it hangs from: {above}"))
-    return way[way.index(names.index(base)) :: -1]
-
-
 def chosen(clip: Clip, model: FramesModel) -> tuple[Clip, range]:
     """Take the frames a scene asks for, with their numbers."""
     count = len(clip.frames)
@@ -186,7 +165,19 @@ def chosen(clip: Clip, model: FramesModel) -> tuple[Clip, range]:
     return taken, numbers
 
 
-def slides(clip: Clip, index: int, place: int) -> list[Fault]:
+def refuse(clip: Clip, way: Sequence[int]) -> None:
+    """Refuse joints from one down to another that limbik cannot make a chain of.
+
+    Raises:
+        InputError: A bone changes its length, or a joint turns about two axes.
+    """
+    faults = [fault for index in way[1:] for fault in _slides(clip, index)]
+    faults += [fault for index in way[:-1] for fault in _refusals(clip, index)]
+    if faults:
+        raise InputError(faults)
+
+
+def _slides(clip: Clip, index: int) -> list[Fault]:
     """Refuse a joint whose position channels change the bone before it."""
     joint = clip.joints[index]
     if not joint.moves:
@@ -200,7 +191,7 @@ def slides(clip: Clip, index: int, place: int) -> list[Fault]:
     return [Fault("slides", message, "", clip.file, joint.line, hint="choose a base below it")]
 
 
-def refusals(clip: Clip, index: int) -> list[Fault]:
+def _refusals(clip: Clip, index: int) -> list[Fault]:
     """Say why a joint cannot be in a chain, if so."""
     joint = clip.joints[index]
     if len(joint.turns) != 2:

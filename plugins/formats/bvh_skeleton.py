@@ -17,7 +17,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Motion
 from limbik.core.frames import Y_UP
 from limbik.core.rotation import Array, matrix_to_hpb
@@ -29,8 +28,7 @@ from limbik.plugins.formats.bvh_chain import (
     lasting_offset,
     model_joint,
     order_of,
-    refusals,
-    slides,
+    refuse,
 )
 from limbik.plugins.formats.bvh_motion import clip_motion
 from limbik.plugins.formats.channels import matrix_to_channels
@@ -61,13 +59,7 @@ class ClipSkeleton(Skeleton):
         """Cut out a chain; its goals are the end's path in the clip."""
         way = self.way(base, end)
         joints = self.clip.joints
-        own = [index for index in way if index < len(joints)]
-        faults = [
-            fault for k, index in enumerate(own[1:], 1) for fault in slides(self.clip, index, k)
-        ]
-        faults += [fault for index in own[:-1] for fault in refusals(self.clip, index)]
-        if faults:
-            raise InputError(faults)
+        refuse(self.clip, [index for index in way if index < len(joints)])
         models = []
         for index in way:
             offset = np.zeros(3) if index == way[0] else self._offset(index)
@@ -121,8 +113,6 @@ def read_skeleton(model: FramesModel, folder: Path) -> ClipSkeleton:
         InputError: The file is at fault, or has no such frames.
     """
     clip, numbers = chosen(read_bvh(folder / model.bvh), model)
-    if not len(clip.frames):
-        raise InputError(Fault("range", "the clip has no frames", "bvh"))
     motion = clip_motion(clip, model.scale)
     places, axes = motion.world()
     return ClipSkeleton(

@@ -7,6 +7,7 @@ shows the motion. The lengths are written as they are: glTF calls them metres.
 import json
 import struct
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -18,8 +19,9 @@ from limbik.core.formats import Bake, BodyBake, Motion, Output
 from limbik.core.frames import Y_UP
 from limbik.core.hooks import hookimpl
 from limbik.core.mirror import side_swapped
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_quaternion
 from limbik.plugins.formats.tables import unmirrored
+from limbik.plugins.paths.quaternions import continuous
 
 _FLOAT, _BYTE, _SHORT = 5126, 5121, 5123
 _TYPES: Final = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
@@ -48,21 +50,17 @@ def write_body(bake: BodyBake) -> bytes:
 
 
 def _content(motion: Motion, mirrored: bool) -> bytes:
+    if mirrored:  # glTF's axes are a mirror of limbik's X, and two mirrors cancel
+        return _File(replace(motion, names=tuple(side_swapped(motion.names)))).content()
     offsets, turns = Y_UP.points(motion.offsets), Y_UP.rotations(motion.turns)
-    names = list(motion.names)
-    if mirrored:
-        # A mirror of X, which here stands for limbik's X too.
-        offsets, turns = Y_UP.points(offsets), Y_UP.rotations(turns)
-        names = side_swapped(names)
-    return _File(motion, names, offsets, turns).content()
+    return _File(replace(motion, offsets=offsets, turns=turns)).content()
 
 
 class _File:
-    """Gathers the JSON part and the buffer of one file."""
+    """Gathers the JSON part and the buffer of one file, for a motion in glTF's axes."""
 
-    def __init__(self, motion: Motion, names: list[str], offsets: Array, turns: Array) -> None:
-        self._motion, self._names = motion, names
-        self._offsets, self._turns = offsets, turns
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
         self._buffer = bytearray()
         self._views: list[dict[str, Any]] = []
         self._accessors: list[dict[str, Any]] = []
@@ -70,7 +68,7 @@ class _File:
     def content(self) -> bytes:
         """Return the bytes of the file."""
         roots = [k for k, parent in enumerate(self._motion.parents) if parent < 0]
-        count = len(self._names)
+        count = len(self._motion.names)
         document = {
             "asset": {"version": "2.0", "generator": f"limbik {__version__}"},
             "scene": 0,
@@ -113,9 +111,9 @@ class _File:
     def _nodes(self) -> list[dict[str, Any]]:
         """One node a joint, in the pose of the first frame."""
         nodes: list[dict[str, Any]] = []
-        quaternions = _quaternions(self._turns[:1])[0]
-        for k, name in enumerate(self._names):
-            node = {"name": name, "translation": self._offsets[0, k].tolist()}
+        quaternions = _quaternions(self._motion.turns[:1])[0]
+        for k, name in enumerate(self._motion.names):
+            node = {"name": name, "translation": self._motion.offsets[0, k].tolist()}
             node["rotation"] = quaternions[k].tolist()
             children = [c for c, parent in enumerate(self._motion.parents) if parent == k]
             nodes.append({**node, "children": children} if children else node)
@@ -135,16 +133,7 @@ class _File:
         return self._store(matrices.transpose(0, 2, 1), _FLOAT)  # column by column
 
     def _first_pose(self) -> tuple[Array, Array]:
-        motion = self._motion
-        here = Motion(
-            motion.names,
-            motion.parents,
-            self._offsets[:1],
-            self._turns[:1],
-            motion.zero,
-            motion.frame_time,
-        )
-        positions, rotations = here.world()
+        positions, rotations = self._motion.first.world()
         return positions[0], rotations[0]
 
     def _primitive(self) -> dict[str, Any]:
@@ -152,7 +141,7 @@ class _File:
         positions, rotations = self._first_pose()
         corners, owners = [], []
         for child, parent in enumerate(self._motion.parents):
-            bone = self._offsets[0, child]
+            bone = self._motion.offsets[0, child]
             if parent >= 0 and np.linalg.norm(bone) > SHORTEST:
                 shape = _octahedron(bone)[np.array(_FACES)].reshape(-1, 3)
                 corners.append(shape @ rotations[parent].T + positions[parent])
@@ -174,13 +163,13 @@ class _File:
 
     def _animation(self) -> dict[str, Any]:
         """Rotations of all joints that turn, positions of those that move."""
-        frames = len(self._offsets)
+        frames = len(self._motion.offsets)
         times = self._store(np.arange(frames) * self._motion.frame_time, _FLOAT)
-        quaternions = _quaternions(self._turns)
+        quaternions = _quaternions(self._motion.turns)
         samplers: list[dict[str, int]] = []
         channels: list[dict[str, Any]] = []
-        for k in range(len(self._names)):
-            for path, track in (("rotation", quaternions), ("translation", self._offsets)):
+        for k in range(len(self._motion.names)):
+            for path, track in (("rotation", quaternions), ("translation", self._motion.offsets)):
                 values = track[:, k]
                 if path == "translation" and np.ptp(values, axis=0).max() <= 0.0:
                     continue
@@ -203,29 +192,10 @@ def _octahedron(bone: Array) -> Array:
 
 def _quaternions(turns: Array) -> Array:
     """Unit quaternions x, y, z, w of rotations (m, n, 3, 3), no change of sign on the way."""
-    m = turns
-    squares = np.stack(
-        [
-            1 + m[..., 0, 0] - m[..., 1, 1] - m[..., 2, 2],
-            1 - m[..., 0, 0] + m[..., 1, 1] - m[..., 2, 2],
-            1 - m[..., 0, 0] - m[..., 1, 1] + m[..., 2, 2],
-            1 + m[..., 0, 0] + m[..., 1, 1] + m[..., 2, 2],
-        ],
-        axis=-1,
-    )
-    xy, xz, yz = (m[..., i, j] + m[..., j, i] for i, j in ((0, 1), (0, 2), (1, 2)))
-    wx, wy, wz = (m[..., i, j] - m[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0)))
-    sx, sy, sz, sw = np.moveaxis(squares, -1, 0)
-    # Four multiples of the same quaternion; the one with the largest divisor is the most exact.
-    forms = np.stack([[sx, xy, xz, wx], [xy, sy, yz, wy], [xz, yz, sz, wz], [wx, wy, wz, sw]])
-    forms = np.moveaxis(forms, (0, 1), (-2, -1))
-    best = squares.argmax(axis=-1)[..., None, None]
-    chosen = np.take_along_axis(forms, best, axis=-2)[..., 0, :]
-    chosen = chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
-    for frame in range(1, len(chosen)):
-        flipped = (chosen[frame] * chosen[frame - 1]).sum(-1) < 0.0
-        chosen[frame, flipped] *= -1.0
-    return np.asarray(chosen)
+    found = matrix_to_quaternion(turns)
+    for joint in range(found.shape[1]):
+        found[:, joint] = continuous(found[:, joint])
+    return found[..., [1, 2, 3, 0]]
 
 
 @hookimpl

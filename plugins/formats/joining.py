@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from limbik.core.chain import SHORTEST, Joint, Limit
+from limbik.core.chain import SHORTEST, Joint, Limit, vector
 from limbik.core.frames import hpb_of
 from limbik.core.rotation import Array, hpb_to_matrix
 
@@ -94,17 +94,8 @@ def joined(models: Sequence[ModelJoint]) -> Joined:
         if slot in (HEADING, PITCH, BANK):
             limits[slot] = limit
             rest[slot] = model.rest - shift
-        joints.append(
-            Joint(model.name, _vector(before.T @ model.offset), _vector(frozen), _vector(rest))
-            if slot == FREE
-            else Joint(
-                model.name,
-                _vector(before.T @ model.offset),
-                _vector(frozen),
-                _vector(rest),
-                *limits,
-            )
-        )
+        place = vector(before.T @ model.offset)
+        joints.append(Joint(model.name, place, vector(frozen), vector(rest), *limits))
         frames.append(frame)
         slots.append(slot)
         shifts.append(shift)
@@ -112,11 +103,6 @@ def joined(models: Sequence[ModelJoint]) -> Joined:
     return Joined(
         tuple(joints), np.array(frames), tuple(slots), np.array(shifts), np.array(shifted)
     )
-
-
-def _vector(values: Sequence[float] | Array) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in values)
-    return x, y, z
 
 
 def _range(model: ModelJoint) -> tuple[float, Limit | None]:

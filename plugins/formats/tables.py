@@ -3,21 +3,19 @@
 Angles in degrees in text, in radians in arrays; a robot's own joint values as its file has them.
 """
 
-import io
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from limbik.core.chain import AXES
 from limbik.core.formats import Bake, Output, Values
 from limbik.core.frames import mirror_hpb
 from limbik.core.goals import PLACE, TURN
 from limbik.core.hooks import hookimpl
 from limbik.core.rotation import Array
-from limbik.core.solution import Status
 from limbik.plugins.formats.bodytables import write_body_csv, write_body_json, write_body_npz
-from limbik.plugins.formats.goalturns import turn_cells, turn_quaternions, turn_record
+from limbik.plugins.formats.columns import labels, solution_arrays, solution_record, turn_cells
+from limbik.plugins.output.encoding import csv_text, npz_bytes, to_json
 
 
 def unmirrored(bake: Bake) -> Array:
@@ -31,28 +29,18 @@ def _values(bake: Bake) -> Values | None:
     return None if bake.mirrored else bake.body.values(bake.solution.angles)
 
 
-def _labels(bake: Bake) -> list[str]:
-    return [Status(int(status)).label for status in np.asarray(bake.solution.status)]
-
-
 def _times(bake: Bake) -> list[float]:
     return [frame * bake.frame_time for frame in range(len(bake.solution.goal))]
 
 
 def write_csv(bake: Bake) -> str:
     """Write one line a frame; its columns of name and goal make it a goal file again."""
-    import csv
-
     solution, values = bake.solution, _values(bake)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    angles = [f"{name} {axis}" for name in solution.chain.names for axis in AXES]
     own = [f"{name} [{values.unit}]" for name in values.names] if values else []
     told = list(bake.servos.names) if bake.servos else []
     turns = bake.goal_turns
     head = ["name", "time", *PLACE, *(() if turns is None else TURN)]
-    head += ["status", "distance", "iterations"]
-    writer.writerow([*head, *angles, *own, *told])
+    head += ["status", "distance", "iterations", *solution.chain.axis_names, *own, *told]
     degrees = np.degrees(solution.angles).reshape(len(solution.goal), -1).tolist()
     rows, ticks = (
         kind.rows.tolist() if kind else [[] for _ in degrees] for kind in (values, bake.servos)
@@ -62,42 +50,31 @@ def write_csv(bake: Bake) -> str:
         _times(bake),
         solution.goal.tolist(),
         turn_cells(turns, len(solution.goal)),
-        _labels(bake),
+        labels(solution),
         np.asarray(solution.distance).tolist(),
         np.asarray(solution.iterations).tolist(),
         degrees,
         rows,
         ticks,
     )
-    for name, time, goal, turn, *rest, turned, row, tick in zip(*columns, strict=True):
-        writer.writerow([name, time, *goal, *turn, *rest, *turned, *row, *tick])
-    return text.getvalue()
+    lines = (
+        [name, time, *goal, *turn, *rest, *turned, *row, *tick]
+        for name, time, goal, turn, *rest, turned, row, tick in zip(*columns, strict=True)
+    )
+    return csv_text(head, lines)
 
 
 def write_json(bake: Bake) -> str:
     """Write one JSON object: columns of the motion, and what the motion is like."""
-    from limbik.plugins.output.records import to_json
-
-    solution, values = bake.solution, _values(bake)
     record: dict[str, Any] = {
         "scene": bake.scene.document.name,
         "mirrored": bake.mirrored,
         "frame_time": bake.frame_time,
-        "joints": list(solution.chain.names),
         "metrics": bake.metrics,
         "names": list(bake.scene.goal_names),
-        "goals": solution.goal.tolist(),
-        "status": _labels(bake),
-        "distance": np.asarray(solution.distance).tolist(),
-        "iterations": np.asarray(solution.iterations).tolist(),
-        "angles": np.degrees(solution.angles).tolist(),
-        "positions": solution.positions.tolist(),
+        **solution_record(bake.solution, bake.goal_turns, _values(bake)),
+        "positions": bake.solution.positions.tolist(),
     }
-    if bake.goal_turns is not None:
-        record["goal_rotations"] = turn_record(bake.goal_turns)
-    if values:
-        own = {"names": list(values.names), "unit": values.unit, "rows": values.rows.tolist()}
-        record["model_values"] = own
     if bake.servos:
         record["servos"] = list(bake.servos.names)
         record["servo_ticks"] = bake.servos.rows.tolist()
@@ -109,28 +86,16 @@ def write_npz(bake: Bake) -> bytes:
 
     Goals with an orientation have it as `quaternions` w, x, y, z, (m, 4), NaN where there is none.
     """
-    solution, values = bake.solution, _values(bake)
     arrays: dict[str, Any] = {
-        "joints": np.array(solution.chain.names),
         "names": np.array(bake.scene.goal_names),
         "frame_time": np.array(bake.frame_time),
-        "goals": solution.goal,
-        "angles": solution.angles,
-        "positions": solution.positions,
-        "rotations": solution.rotations,
-        "status": np.asarray(solution.status),
-        "distance": np.asarray(solution.distance),
-        "iterations": np.asarray(solution.iterations),
+        **solution_arrays(bake.solution, bake.goal_turns, _values(bake)),
+        "positions": bake.solution.positions,
+        "rotations": bake.solution.rotations,
     }
-    if bake.goal_turns is not None:
-        arrays["quaternions"] = turn_quaternions(bake.goal_turns)
-    if values:
-        arrays |= {"model_names": np.array(values.names), "model_values": values.rows}
     if bake.servos:
         arrays |= {"servos": np.array(bake.servos.names), "servo_ticks": bake.servos.rows}
-    content = io.BytesIO()
-    np.savez_compressed(content, **arrays)
-    return content.getvalue()
+    return npz_bytes(arrays)
 
 
 @hookimpl

@@ -15,10 +15,10 @@ import numpy as np
 from limbik.core.errors import Fault, InputError, shortlist
 from limbik.core.rotation import Array
 from limbik.core.scenemodel import FARTHEST
+from limbik.core.yamlscalars import looks_like_number
 from limbik.plugins.formats.markup import MOST_BYTES, Element, read_bounded, read_xml
 
 TYPES: Final = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical")
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _ENDLESS: Final = 1e300  # a limit may be absurdly wide; a number without end is none
 _UNEXPANDED = re.compile(r"\$\(|\$\{")
 
@@ -220,7 +220,7 @@ class _Joint:
         self, element: Element, attribute: str, text: str, most: float = FARTHEST
     ) -> float | None:
         """Read a number; a fault is said and None returned."""
-        if not _NUMBER.fullmatch(text):
+        if not looks_like_number(text):
             message = f"joint '{self._name}': {attribute}: not a number: '{text[:40]}'"
             self._say(element.fault("number", message, attribute))
             return None

@@ -10,8 +10,8 @@ their names, angles and limits; fixed joints are merged into the next one. A ran
 the robot's values; one of a whole turn or more does not limit.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import degrees, radians
 from pathlib import Path
 from typing import Annotated
@@ -62,12 +62,10 @@ class UrdfModel(Model):
 class UrdfBody(Body):
     """A chain of a robot, with the way back to the robot's joint values."""
 
-    join: Joined | None = None
+    join: Joined = field(kw_only=True)
 
-    def values(self, angles: Array) -> Values | None:
+    def values(self, angles: Array) -> Values:
         """Return the robot's hinge values [rad]."""
-        if self.join is None:
-            return None
         names, rows = self.join.hinge_values(angles)
         return Values(names, "rad", rows)
 
@@ -82,18 +80,15 @@ def read_body(model: UrdfModel, folder: Path) -> UrdfBody:
     joints = _between(robot, model.base, model.end)
     faults = [fault for joint in joints for fault in refusals(joint)]
     hinges = [joint.name for joint in joints if joint.is_hinge]
-    for name in model.rest:
-        if name not in hinges:
-            hint = near_match(name, hinges) or f"hinges: {', '.join(hinges[:12])}"
-            faults.append(
-                Fault("unknown-joint", f"no hinge '{name}' in the chain", "rest", hint=hint)
-            )
+    faults += rest_faults(model.rest, hinges, "no hinge {} in the chain")
     if not hinges and not faults:
         message = f"there is no hinge between '{model.base}' and '{model.end}'"
         faults.append(Fault("chain", message, "end"))
     if faults:
         raise InputError(faults)
-    return _body(robot, joints, model)
+    models, notes = hinge_models(joints, model.end, model.scale, model.rest)
+    join = joined(models)
+    return UrdfBody(Chain(join.joints), (*robot.notes, *notes), join=join)
 
 
 def _between(robot: Robot, base: str, end: str) -> list[UrdfJoint]:
@@ -126,25 +121,59 @@ def refusals(joint: UrdfJoint) -> list[Fault]:
     return []
 
 
-def _body(robot: Robot, joints: list[UrdfJoint], model: UrdfModel) -> UrdfBody:
-    models, notes = [], []
+def hinge_models(
+    joints: Sequence[UrdfJoint], end: str, scale: float, rest: Mapping[str, float]
+) -> tuple[list[ModelJoint], list[str]]:
+    """Make joints of a chain, in limbik's axes; fixed joints are merged into the next one.
+
+    Args:
+        joints: From the base link down to the end, none that `refusals` refuses.
+        end: Name of the end link.
+        scale: Scene lengths a metre.
+        rest: Initial values of hinges [deg].
+
+    Returns:
+        The hinges and the end, the first with its offset from the base link; and what should be
+        known about them.
+    """
+    models: list[ModelJoint] = []
+    notes: list[str] = []
     place, turn = np.zeros(3), np.eye(3)
     for joint in joints:
-        place = place + turn @ Z_UP.points(joint.place) * model.scale
-        turn = turn @ Z_UP.rotations(rpy_to_matrix(joint.turn))
+        offset, own = origin(joint, scale)
+        place, turn = place + turn @ offset, turn @ own
         if not joint.is_hinge:
             continue
-        rest, note = rest_value(joint, model.rest)
+        value, note = rest_value(joint, rest)
         notes += note
         axis = Z_UP.points(joint.axis)
-        models.append(ModelJoint(joint.name, place, turn, "hinge", axis, joint.limit, rest))
+        models.append(ModelJoint(joint.name, place, turn, "hinge", axis, joint.limit, value))
         place, turn = np.zeros(3), np.eye(3)
-    name = model.end
-    while name in {joint.name for joint in models}:
-        name += " link"
-    models.append(ModelJoint(name, place, turn, "fixed"))
-    join = joined(models)
-    return UrdfBody(Chain(join.joints), (*robot.notes, *notes), join=join)
+    while end in {model.name for model in models}:
+        end += " link"
+    return [*models, ModelJoint(end, place, turn, "fixed")], notes
+
+
+def origin(joint: UrdfJoint, scale: float) -> tuple[Array, Array]:
+    """Return where a joint stands in its parent link, (3,) [length], and how it is turned there."""
+    turn = Z_UP.rotations(rpy_to_matrix(joint.turn))
+    return Z_UP.points(joint.place) * scale, turn
+
+
+def rest_faults(rest: Iterable[str], hinges: Sequence[str], message: str) -> list[Fault]:
+    """Refuse initial values of what is no hinge.
+
+    Args:
+        rest: Names that are given values.
+        hinges: Names of the hinges there are.
+        message: What to say, with `{}` for the name.
+    """
+    return [
+        Fault("unknown-joint", message.format(f"'{name}'"), "rest", hint=hint)
+        for name in rest
+        if name not in hinges
+        for hint in [near_match(name, list(hinges)) or f"hinges: {', '.join(hinges[:12])}"]
+    ]
 
 
 def rest_value(joint: UrdfJoint, wanted_degrees: Mapping[str, float]) -> tuple[float, list[str]]:

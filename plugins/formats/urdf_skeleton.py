@@ -10,7 +10,7 @@ The joints of the skeleton are the robot's links, each turned by the joint that 
 that slide or copy another joint keep their zero. The root link's frame is limbik's world.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -18,15 +18,22 @@ import numpy as np
 
 from limbik.core.errors import Fault, InputError
 from limbik.core.formats import Motion
-from limbik.core.frames import Z_UP, rpy_to_matrix, turn_about
+from limbik.core.frames import Z_UP, turn_about
 from limbik.core.rotation import Array
 from limbik.core.settings import Model
 from limbik.core.skeleton import STILL, Skeleton
-from limbik.core.wording import near_match
-from limbik.plugins.formats.joining import ModelJoint
 from limbik.plugins.formats.limbs import ModelLimb, model_limb
 from limbik.plugins.formats.urdf import Robot, UrdfJoint, read_urdf
-from limbik.plugins.formats.urdf_chain import RestValues, RobotFile, Scale, refusals, rest_value
+from limbik.plugins.formats.urdf_chain import (
+    RestValues,
+    RobotFile,
+    Scale,
+    hinge_models,
+    origin,
+    refusals,
+    rest_faults,
+    rest_value,
+)
 
 
 class UrdfSkeletonModel(Model):
@@ -39,9 +46,16 @@ class UrdfSkeletonModel(Model):
 
 @dataclass(frozen=True, eq=False)
 class UrdfSkeleton(Skeleton):
-    """A robot's links."""
+    """A robot's links.
+
+    Attributes:
+        carriers: The joint that carries each link, None for a root.
+        scale: Scene lengths a metre of the robot.
+        rest: Initial values of hinges [deg].
+    """
 
     carriers: tuple[UrdfJoint | None, ...] = field(kw_only=True)
+    scale: float = field(kw_only=True)
     rest: dict[str, float] = field(kw_only=True)
     whole: ClassVar[str] = "robot"
     part: ClassVar[str] = "link"
@@ -56,27 +70,10 @@ class UrdfSkeleton(Skeleton):
             faults = [Fault("chain", message, "end")]
         if faults:
             raise InputError(faults)
-        models: list[ModelJoint] = []
-        notes: list[str] = []
-        at: list[int] = []
-        place, turn = np.zeros(3), np.eye(3)
-        for link, joint in zip(way, carriers, strict=True):
-            place = place + turn @ self.motion.offsets[0, link]
-            turn = turn @ self.motion.zero[link]
-            if not joint.is_hinge:
-                continue
-            if not models:  # the base of the chain stands in its first hinge
-                place, turn = np.zeros(3), self.motion.zero[link]
-            rest, note = rest_value(joint, self.rest)
-            notes += note
-            axis = Z_UP.points(joint.axis)
-            models.append(ModelJoint(joint.name, place, turn, "hinge", axis, joint.limit, rest))
-            at.append(link)
-            place, turn = np.zeros(3), np.eye(3)
-        name = end
-        while name in {model.name for model in models}:
-            name += " link"
-        models.append(ModelJoint(name, place, turn, "fixed"))
+        at = [link for link, joint in zip(way, carriers, strict=True) if joint.is_hinge]
+        models, notes = hinge_models(carriers, end, self.scale, self.rest)
+        # The base of a limb stands in its first hinge.
+        models[0] = replace(models[0], offset=np.zeros(3), turn=self.motion.zero[at[0]])
         return model_limb(self, models, [*at, way[-1]], tuple(notes), "rad")
 
 
@@ -88,12 +85,7 @@ def read_skeleton(model: UrdfSkeletonModel, folder: Path) -> UrdfSkeleton:
     """
     robot = read_urdf(folder / model.urdf)
     hinges = [joint.name for joint in robot.joints.values() if joint.is_hinge]
-    faults = []
-    for name in model.rest:
-        if name not in hinges:
-            hint = near_match(name, hinges) or f"hinges: {', '.join(hinges[:12])}"
-            message = f"the robot has no hinge '{name}'"
-            faults.append(Fault("unknown-joint", message, "rest", hint=hint))
+    faults = rest_faults(model.rest, hinges, "the robot has no hinge {}")
     if faults:
         raise InputError(faults)
     return _skeleton(robot, model)
@@ -109,14 +101,17 @@ def _skeleton(robot: Robot, model: UrdfSkeletonModel) -> UrdfSkeleton:
             zero.append(np.eye(3))
             turns.append(np.eye(3))
             continue
-        offsets.append(Z_UP.points(joint.place) * model.scale)
-        zero.append(Z_UP.rotations(rpy_to_matrix(joint.turn)))
+        place, turn = origin(joint, model.scale)
+        offsets.append(place)
+        zero.append(turn)
         turns.append(zero[-1] @ _own(joint, model))
     parents = tuple(-1 if joint is None else links.index(joint.parent) for joint in carriers)
     motion = Motion(
         tuple(links), parents, np.array([offsets]), np.array([turns]), np.array(zero), STILL
     )
-    return UrdfSkeleton(motion, robot.notes, carriers=tuple(carriers), rest=model.rest)
+    return UrdfSkeleton(
+        motion, robot.notes, carriers=tuple(carriers), scale=model.scale, rest=model.rest
+    )
 
 
 def _own(joint: UrdfJoint, model: UrdfSkeletonModel) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 
 from limbik.core.body import BodySolution, chain_solutions, solve_body
 from limbik.core.bodyscene import BodyScene, Part
+from limbik.core.chain import vector
 from limbik.core.errors import SceneError
 from limbik.core.pole import Pole
 from limbik.core.registry import Registry
@@ -78,5 +79,4 @@ def _pole(
     if np.ptp(places, axis=0).max() > _STILL * part.scene.chain.length:
         message = "limbik judge needs a pole that stands still before the chain's base"
         raise SceneError([part.scene.document.fault("solver", message, ("pole",))])
-    x, y, z = places[0].tolist()
-    return pole.model_copy(update={"position": (x, y, z)})
+    return pole.model_copy(update={"position": vector(places[0])})

@@ -8,14 +8,19 @@ from limbik.plugins.judging.run import NotJudged, Run
 BENT = np.radians(5.0)  # less total bend says nothing about its share [rad]
 
 
-def bends(run: Run) -> Array:
-    """Bend of every joint inside the limb, (m, joints) [rad], where it is bent at all."""
+def _bones(run: Run) -> Array:
+    """Bones of a length from the bend root on, (m, bones, 3) [length]."""
     root = run.settings.bend_reference - 1
     bones = np.diff(run.solution.positions[:, root:], axis=1)
-    sizes = np.linalg.norm(bones, axis=2)
-    bones = bones[:, sizes[0] > 0.0] / sizes[:, sizes[0] > 0.0, None]
+    bones = bones[:, np.linalg.norm(bones[0], axis=1) > 0.0]
     if bones.shape[1] < 3:
         raise NotJudged("a curve needs at least three bones")
+    return np.asarray(bones)
+
+
+def bends(run: Run) -> Array:
+    """Bend of every joint inside the limb, (m, joints) [rad], where it is bent at all."""
+    bones = _bones(run)
     sine = np.linalg.norm(np.cross(bones[:, :-1], bones[:, 1:]), axis=2)
     found = np.arctan2(sine, (bones[:, :-1] * bones[:, 1:]).sum(2))
     found = found[found.sum(axis=1) > BENT]
@@ -29,12 +34,8 @@ def s_shape(run: Run) -> float:
 
     A limb that bends to one side only counts as 0.5.
     """
-    root = run.settings.bend_reference - 1
-    bones = np.diff(run.solution.positions[:, root:], axis=1)
+    bones = _bones(run)
     sizes = np.linalg.norm(bones[0], axis=1)
-    bones, sizes = bones[:, sizes > 0.0], sizes[sizes > 0.0]
-    if bones.shape[1] < 3:
-        raise NotJudged("a curve needs at least three bones")
     turns = np.cross(bones[:, :-1], bones[:, 1:])
     strongest = np.linalg.norm(turns, axis=2).argmax(axis=1)
     side = turns[np.arange(len(turns)), strongest]

@@ -25,8 +25,8 @@ def flips(run: Run) -> float:
         for _ in range(HALVINGS):
             middle = 0.5 * (near + far)
             pose = run.solve(middle[None], None).angles[0]
-            first = pose_difference(run, poses[0], pose)
-            second = pose_difference(run, pose, poses[1])
+            first = pose_difference(poses[0], pose)
+            second = pose_difference(pose, poses[1])
             if first > second:
                 far, poses = middle, np.stack([poses[0], pose])
             else:
@@ -44,7 +44,7 @@ def history(run: Run) -> float:
     worst = 0.0
     for order in orders:
         again = _solved_again(run, order)
-        worst = max(worst, pose_difference(run, again, run.solution.angles[order]))
+        worst = max(worst, pose_difference(again, run.solution.angles[order]))
     return worst
 
 
@@ -52,7 +52,7 @@ def drift(run: Run) -> float:
     """Turn of the first goal's pose after the whole path and 1000 more solves of it [rad]."""
     back = np.concatenate([np.arange(len(run.goals)), np.zeros(AGAIN, int)])
     again = _solved_again(run, back)[len(run.goals) :]
-    return pose_difference(run, again, np.broadcast_to(run.solution.angles[0], again.shape))
+    return pose_difference(again, np.broadcast_to(run.solution.angles[0], again.shape))
 
 
 def _solved_again(run: Run, order: NDArray[np.int64]) -> Array:

@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from limbik.core.bodyscene import BodyScene
@@ -15,7 +13,7 @@ from limbik.core.scene import Scene
 from limbik.core.wording import near_match
 from limbik.plugins.judging.catalogue import BY_NAME, METRICS, Metric
 from limbik.plugins.judging.run import NotJudged, run_scene
-from limbik.plugins.output.table import new_console
+from limbik.plugins.output.table import new_console, new_table
 
 PASSED, FAILED, MEASURED, NOT_JUDGED = "passed", "failed", "measured", "not judged"
 
@@ -121,9 +119,8 @@ def print_verdicts(verdicts: list[Verdict], chain: str = "") -> None:
     console = new_console()
     if chain:
         console.print(Text(chain, "bold"))
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for title in ("metric", "", "value", "max", "unit", "verdict", "meaning"):
-        table.add_column(title, justify="right" if title in ("value", "max") else "left")
+    titles = ("metric", "", "value", "max", "unit", "verdict", "meaning")
+    table = new_table(*titles, right=("value", "max"))
     colours = {PASSED: "green", FAILED: "red"}
     for verdict in verdicts:
         metric, word = verdict.metric, verdict.word

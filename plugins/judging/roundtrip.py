@@ -32,9 +32,9 @@ def _turn(run: Run, first: Solver, goal: Array, pose: Array) -> float:
     for mix in MIXES:
         mixed = solver.altered(fk_mix=mix, fk_strength=0.0)
         angles = mixed.solve(goal, fk_offsets=offsets).angles
-        worst = max(worst, pose_difference(run, angles, pose))
+        worst = max(worst, pose_difference(angles, pose))
     back = _matched(first, angles)
-    return max(worst, back.difference, pose_difference(run, back.solution.angles, pose))
+    return max(worst, back.difference, pose_difference(back.solution.angles, pose))
 
 
 def _matched(solver: Solver, pose: Array) -> Match:

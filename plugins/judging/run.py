@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from limbik.core.chain import Chain
+from limbik.core.kernels.reach import least_reach
 from limbik.core.motion import turn_between
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
@@ -73,7 +74,7 @@ class Run:
     def hole(self) -> float:
         """Least distance from the bend root that bones without limits can have [length]."""
         bones = self.chain.lengths[self.settings.bend_reference - 1 :]
-        return max(0.0, float(2.0 * bones.max() - bones.sum()))
+        return least_reach(float(bones.sum()), float(bones.max()))
 
     @property
     def is_limited(self) -> bool:
@@ -122,7 +123,6 @@ def run_scene(scene: Scene, registry: Registry | None = None) -> Run:
     return Run(solver, scene.goals, offsets, scene.follow, rate, solution, scene.goal_turns)
 
 
-def pose_difference(run: Run, first: Array, second: Array) -> float:
+def pose_difference(first: Array, second: Array) -> float:
     """Return the largest turn of a joint before the end between poses (..., n, 3) [rad]."""
-    turns = turn_between(hpb_to_matrix(first), hpb_to_matrix(second))
-    return float(turns[..., : len(run.chain) - 1].max())
+    return float(turn_between(hpb_to_matrix(first), hpb_to_matrix(second))[..., :-1].max())

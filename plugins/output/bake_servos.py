@@ -1,4 +1,4 @@
-"""Servo ticks in the files of `limbik bake`."""
+"""The servos a user asks for, and their ticks in the files of `limbik bake`."""
 
 import numpy as np
 
@@ -11,9 +11,18 @@ from limbik.plugins.output.servo_motion import servo_path
 
 
 def servo_profile(
-    source: str | None, scene: Scene | BodyScene, writer: Output, mirrored: bool
+    source: str | None,
+    scene: Scene | BodyScene,
+    writer: Output | None = None,
+    mirrored: bool = False,
 ) -> Profile | None:
     """Read the profile a user names; None for none.
+
+    Args:
+        source: As for `read_profile`.
+        scene: What the servos move.
+        writer: Of the file the ticks go into, if any.
+        mirrored: Whether left and right are exchanged in that file.
 
     Raises:
         InputError: It is at fault, or what is baked has no place for ticks.
@@ -21,7 +30,7 @@ def servo_profile(
     if source is None:
         return None
     faults = []
-    if not writer.servos:
+    if writer is not None and not writer.servos:
         message = f"{writer.name} files hold no servo ticks"
         faults.append(Fault("ending", message, "--servo", hint="write a .csv, .json or .npz"))
     if mirrored:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from limbik.core.errors import Fault, InputError, shortlist
+from limbik.core.goals import PLACE
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
 from limbik.core.scene import Scene
@@ -14,7 +15,18 @@ from limbik.core.slots import SOLVER
 from limbik.core.solution import AT_LIMIT, Solution
 from limbik.core.solving import solve_scene
 from limbik.core.whole import OWN_SOLVERS, prepare
-from limbik.plugins.output.plot import FAINT, INK, LIMIT, LOOK, PAPER, picture
+from limbik.plugins.output.plot import (
+    FAINT,
+    GOAL,
+    INK,
+    LIMIT,
+    LOOK,
+    PAPER,
+    new_figure,
+    picture,
+    seen_axes,
+    write_above,
+)
 from limbik.plugins.output.records import solve_record, status_label
 
 if TYPE_CHECKING:
@@ -22,7 +34,6 @@ if TYPE_CHECKING:
 
 COLOURS = ("#1f6fd6", "#e0559b", "#00875a", "#e69f00", "#6f4bb8", "#0f8b9d", "#8a5a2b", "#5f6b7a")
 MOST_ROWS = 5
-AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True)
@@ -105,14 +116,10 @@ def draw_comparison(comparison: Comparison, form: str) -> bytes:
 
 
 def _figure(comparison: Comparison) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     scene, solvers = comparison.scene, comparison.solutions
     rows, columns = min(len(scene.goals), MOST_ROWS), len(solvers)
     height = 3.3 * rows + 0.9
-    figure = Figure(figsize=(3.3 * columns, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
+    figure = new_figure(3.3 * columns, height)
     order, low, high = _view(comparison, rows)
     for column, (name, found) in enumerate(solvers.items()):
         for row in range(rows):
@@ -123,7 +130,7 @@ def _figure(comparison: Comparison) -> "Figure":
             axes.tick_params(labelsize=7, length=0, labelleft=column == 0)
             title = f"{name}\n" if row == 0 else ""
             _caption(axes, title, scene.goal_names[row], found[row])
-    names = f"{AXES[order[0]]} to the right, {AXES[order[1]]} up"
+    names = f"{PLACE[order[0]]} to the right, {PLACE[order[1]]} up"
     left_out = f"; {len(scene.goals) - rows} more goals" if rows < len(scene.goals) else ""
     text = f"{scene.name}: {names}. × goal, filled: joint at a limit, square: beyond it{left_out}"
     figure.text(0.5, 0.12 / height, text, ha="center", fontsize=8, color=FAINT)
@@ -135,9 +142,7 @@ def _view(comparison: Comparison, rows: int) -> tuple[tuple[int, int], Array, Ar
     """Pick the two axes with the largest extent, the upright one upward; low and high corners."""
     found = [s for all_of in comparison.solutions.values() for s in all_of[:rows]]
     points = np.concatenate([*(s.positions for s in found), *(s.goal[None] for s in found)])
-    extent = np.ptp(points, axis=0)
-    flat = int(np.argmin(extent + np.array([0.0, 1e-9, 0.0])))
-    order = {0: (2, 1), 1: (0, 2), 2: (0, 1)}[flat]
+    order = seen_axes(np.ptp(points, axis=0))
     seen = points[:, order]
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2.0
     half = 0.56 * float(np.ptp(seen, axis=0).max() or 1.0)
@@ -150,12 +155,12 @@ def _draw(axes: Any, solution: Solution, order: tuple[int, int], colour: str) ->
     axes.plot(*places.T, color=colour, lw=5.0, solid_capstyle="round", alpha=0.85, zorder=2)
     chain, angles = solution.chain, solution.angles
     past = np.maximum(chain.low - angles, angles - chain.high).max(axis=1)
-    touched = {text.rsplit(" ", 1)[0] for text in solution.limits_touched()}
-    for joint, name in enumerate(chain.names):
+    resting = {joint for joint, _ in solution.resting_axes()}
+    for joint in range(len(chain)):
         mark, fill = "o", PAPER
         if past[joint] > AT_LIMIT:
             mark, fill = "s", LIMIT
-        elif name in touched:
+        elif joint in resting:
             fill = LIMIT
         edge = LIMIT if fill == LIMIT else INK
         axes.plot(*places[joint], mark, ms=6.5, mfc=fill, mec=edge, mew=1.3, zorder=4)
@@ -171,13 +176,4 @@ def _caption(axes: Any, title: str, goal: str, solution: Solution) -> None:
     parts += [f"{broken} limit{'s' * (broken > 1)} broken"] if broken else []
     good = solution.reached and not broken
     axes.set_title(f"{title}goal {goal}", fontsize=9, color=INK, pad=16)
-    axes.annotate(
-        ", ".join(parts),
-        (0.5, 1.0),
-        (0.0, 5.0),
-        "axes fraction",
-        "offset points",
-        ha="center",
-        fontsize=7,
-        color="#00875a" if good else LIMIT,
-    )
+    write_above(axes, [(5.0, ", ".join(parts), {"fontsize": 7, "color": GOAL if good else LIMIT})])

@@ -83,7 +83,8 @@ def _lines(error: BaseException, code: int) -> list[str]:
 
 
 def _tell_json(error: BaseException, code: int) -> None:
-    from limbik.plugins.output.records import failure_record, to_json
+    from limbik.plugins.output.encoding import to_json
+    from limbik.plugins.output.records import failure_record
 
     print(to_json(failure_record(error, _STATUS[code])))
 

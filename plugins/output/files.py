@@ -21,23 +21,6 @@ def write_whole(path: Path, content: str | bytes, *, durable: bool = False) -> N
     Raises:
         EnvironmentProblem: The folder is missing, full or not writable.
     """
-    _write(path, content, durable)
-
-
-def write_new(path: Path, content: str | bytes) -> None:
-    """Write a file that must not exist yet; as `write_whole`.
-
-    Raises:
-        InputError: The file exists; it is left as it is.
-        EnvironmentProblem: The folder is missing, full or not writable.
-    """
-    if path.exists():
-        message = "the file exists already and stays as it is"
-        raise InputError(Fault("exists", message, file=str(path), hint="choose another name"))
-    _write(path, content, False)
-
-
-def _write(path: Path, content: str | bytes, durable: bool) -> None:
     payload = content.encode() if isinstance(content, str) else content
     beside = None
     try:
@@ -54,6 +37,19 @@ def _write(path: Path, content: str | bytes, durable: bool) -> None:
     finally:
         if beside is not None:
             beside.unlink(missing_ok=True)
+
+
+def write_new(path: Path, content: str | bytes) -> None:
+    """Write a file that must not exist yet; as `write_whole`.
+
+    Raises:
+        InputError: The file exists; it is left as it is.
+        EnvironmentProblem: The folder is missing, full or not writable.
+    """
+    if path.exists():
+        message = "the file exists already and stays as it is"
+        raise InputError(Fault("exists", message, file=str(path), hint="choose another name"))
+    write_whole(path, content)
 
 
 def _mask() -> int:

@@ -65,11 +65,16 @@ def check_plot(path: Path) -> None:
         InputError: The ending is none of `FORMATS`.
         EnvironmentProblem: matplotlib is not installed.
     """
-    if path.suffix.lower().removeprefix(".") not in FORMATS:
+    if form_of(path) not in FORMATS:
         message = f"the file must end in {', '.join(f'.{f}' for f in FORMATS)}, not '{path.name}'"
         raise InputError(Fault("choice", message, "--plot"))
     if find_spec("matplotlib") is None:
         raise EnvironmentProblem("drawing needs matplotlib: pip install 'limbik[plot]'")
+
+
+def form_of(path: Path) -> str:
+    """Return what a picture's ending asks for, one of `FORMATS` if `check_plot` took it."""
+    return path.suffix.lower().removeprefix(".")
 
 
 def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> bytes:
@@ -90,32 +95,50 @@ def draw(scene: Scene, solutions: Sequence[Solution], form: str = "png") -> byte
 
 
 def _figure(scene: Scene, solutions: Sequence[Solution]) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     shown = list(zip(scene.goal_names, solutions, strict=True))[:MOST_PICTURES]
     columns, rows = grid(len(shown))
     width, height = (9.0, 6.8) if len(shown) == 1 else (3.7 * columns, 4.0 * rows + 1.2)
-    figure = Figure(figsize=(width, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height)
     bounds = _bounds([solution for _, solution in shown])
     if len(shown) == 1:
-        _draw_views(figure, scene, *shown[0], bounds)
+        _draw_views(figure, *shown[0], bounds)
     else:
         for index, (name, solution) in enumerate(shown, 1):
             axes = figure.add_subplot(rows, columns, index, projection="3d")
-            _draw_space(axes, scene, solution, bounds)
-            _caption(axes, scene, name, solution)
+            _draw_space(axes, solution, bounds)
+            _caption(axes, name, solution)
     _legend(figure, scene, len(shown), len(solutions))
     figure.subplots_adjust(0.03, 0.8 / height, 0.97, 1.0 - 1.35 / height, 0.06, 0.34)
     return figure
 
 
-def picture(figure: "Figure", form: str) -> bytes:
+def new_figure(width: float, height: float) -> "Figure":
+    """Return an empty picture of a size [inches]; no window system is asked."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), facecolor=PAPER)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def picture(figure: "Figure", form: str, dpi: int = 130) -> bytes:
     """Return the content of a figure's file."""
     content = BytesIO()
-    figure.savefig(content, format=form, dpi=130, metadata=undated(form))
+    figure.savefig(content, format=form, dpi=dpi, metadata=undated(form))
     return content.getvalue()
+
+
+def seen_axes(extent: Array) -> tuple[int, int]:
+    """Return the axes of a flat view of points, to the right and up; y is up if it is seen.
+
+    Left out is the axis along which they spread least.
+
+    Args:
+        extent: How far the points spread along x, y, z, (3,) [length].
+    """
+    flat = int(np.argmin(extent + np.array([0.0, 1e-9, 0.0])))
+    return ((2, 1), (0, 2), (0, 1))[flat]
 
 
 def grid(count: int) -> tuple[int, int]:
@@ -153,16 +176,7 @@ def box_around(points: Array) -> Bounds:
     return low - spare, high + spare
 
 
-def _limited(scene: Scene, solution: Solution) -> dict[str, list[str]]:
-    """Axes at their limits by joint."""
-    found: dict[str, list[str]] = {}
-    for touched in solution.limits_touched():
-        joint, axis = touched.rsplit(" ", 1)
-        found.setdefault(joint, []).append(axis)
-    return found
-
-
-def _draw_limb(axes: Any, scene: Scene, solution: Solution, order: tuple[int, ...]) -> None:
+def _draw_limb(axes: Any, solution: Solution, order: tuple[int, ...]) -> None:
     """Draw stages, joints and goal; `order` picks the world axes that are drawn."""
     if isinstance(solution, PlanarSolution):
         draw_plane(axes, solution, order)
@@ -173,14 +187,14 @@ def _draw_limb(axes: Any, scene: Scene, solution: Solution, order: tuple[int, ..
     count = len(final)
     size = 7.0 if count <= 8 else 4.0
     axes.plot(*final.T, "o", ms=size, mfc=PAPER, mec=FINAL, mew=1.6, zorder=8)
-    limited = [i for i, n in enumerate(scene.chain.names) if n in _limited(scene, solution)]
+    limited = sorted({joint for joint, _ in solution.resting_axes()})
     axes.plot(*final[limited].T, "o", ms=size, mfc=LIMIT, mec=LIMIT, zorder=9)
     goal = solution.goal[list(order)]
     axes.plot(*goal[:, None], "o", ms=13, mfc="none", mec=GOAL, mew=2.0, zorder=10)
     axes.plot(*goal[:, None], "+", ms=9, mec=GOAL, mew=1.6, zorder=10)
 
 
-def _draw_space(axes: Any, scene: Scene, solution: Solution, bounds: Bounds) -> None:
+def _draw_space(axes: Any, solution: Solution, bounds: Bounds) -> None:
     """Draw one solution in three dimensions, with shadows that give depth."""
     low, _ = bounds
     floor, wall = solution.positions.copy(), solution.positions.copy()
@@ -190,7 +204,7 @@ def _draw_space(axes: Any, scene: Scene, solution: Solution, bounds: Bounds) -> 
     foot = np.array([solution.goal, solution.goal])
     foot[1, 1] = low[1]
     axes.plot(*foot[:, SPACE].T, color=GOAL, lw=0.9, ls=":", zorder=1)
-    _draw_limb(axes, scene, solution, SPACE)
+    _draw_limb(axes, solution, SPACE)
     set_space(axes, bounds)
 
 
@@ -209,21 +223,19 @@ def set_space(axes: Any, bounds: Bounds) -> None:
         axis.labelpad = -8
 
 
-def _draw_views(
-    figure: "Figure", scene: Scene, name: str, solution: Solution, bounds: Bounds
-) -> None:
+def _draw_views(figure: "Figure", name: str, solution: Solution, bounds: Bounds) -> None:
     """Draw one solution large in space, and from the front and the side."""
     grid = figure.add_gridspec(2, 2, width_ratios=(1.5, 1.0))
     space = figure.add_subplot(grid[:, 0], projection="3d")
-    _draw_space(space, scene, solution, bounds)
-    _caption(space, scene, name, solution)
+    _draw_space(space, solution, bounds)
+    _caption(space, name, solution)
     low, high = bounds
     for row, (order, title) in enumerate((((0, 1), "x and y"), ((2, 1), "z and y"))):
         axes: Any = figure.add_subplot(grid[row, 1])
         if row == 0 and isinstance(solution, PlanarSolution):
             draw_planar(axes, solution, STAGES, GOAL, LIMIT)
             continue
-        _draw_limb(axes, scene, solution, order)
+        _draw_limb(axes, solution, order)
         across, up = order
         axes.set(xlim=(low[across], high[across]), ylim=(low[up], high[up]), aspect="equal")
         axes.set_title(title, fontsize=9, color=FAINT)
@@ -231,23 +243,31 @@ def _draw_views(
         axes.tick_params(labelsize=7, length=0)
 
 
-def _caption(axes: Any, scene: Scene, name: str, solution: Solution) -> None:
-    """Write the goal's name, how it went, and the joints at their limits."""
-    ending = f"{outcome(solution)}, distance {float(solution.distance):.2g}"
-    lines = (
-        (34.0, name, {"fontsize": 11, "fontweight": "bold", "color": INK}),
-        (20.0, ending, {"color": GOAL if solution.reached else LIMIT}),
-        (8.0, _limit_text(scene, solution), {"fontsize": 7.5, "color": LIMIT}),
-    )
+def write_above(axes: Any, lines: Sequence[tuple[float, str, dict[str, Any]]]) -> None:
+    """Write lines above a picture: how far up [points], text and look of each."""
     for points, text, style in lines:
         axes.annotate(
             text, (0.5, 1.0), (0.0, points), "axes fraction", "offset points", ha="center", **style
         )
 
 
-def _limit_text(scene: Scene, solution: Solution) -> str:
+def _caption(axes: Any, name: str, solution: Solution) -> None:
+    """Write the goal's name, how it went, and the joints at their limits."""
+    ending = f"{outcome(solution)}, distance {float(solution.distance):.2g}"
+    lines = (
+        (34.0, name, {"fontsize": 11, "fontweight": "bold", "color": INK}),
+        (20.0, ending, {"color": GOAL if solution.reached else LIMIT}),
+        (8.0, _limit_text(solution), {"fontsize": 7.5, "color": LIMIT}),
+    )
+    write_above(axes, lines)
+
+
+def _limit_text(solution: Solution) -> str:
     """Name the joints at their limits, as many as fit above a picture."""
-    found = [f"{joint} {' '.join(axes)}" for joint, axes in _limited(scene, solution).items()]
+    by_joint: dict[str, list[str]] = {}
+    for joint, axis in solution.resting_axes():
+        by_joint.setdefault(solution.chain.names[joint], []).append(axis)
+    found = [f"{joint} {' '.join(axes)}" for joint, axes in by_joint.items()]
     text = ", ".join(found)
     for left_out in range(1, len(found)):
         if len(text) <= WIDEST_TEXT:

@@ -24,8 +24,10 @@ from limbik.plugins.output.plot import (
     Bounds,
     box_around,
     grid,
+    new_figure,
     picture,
     set_space,
+    write_above,
 )
 
 if TYPE_CHECKING:
@@ -50,14 +52,10 @@ def draw_body(scene: BodyScene, found: Sequence[BodySolution], form: str = "png"
 
 
 def _figure(scene: BodyScene, found: Sequence[BodySolution]) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     shown = np.unique(np.linspace(0, len(found) - 1, min(len(found), MOST_PICTURES)).astype(int))
     columns, rows = grid(len(shown))
     width, height = (7.0, 7.6) if len(shown) == 1 else (3.7 * columns, 4.0 * rows + 1.2)
-    figure = Figure(figsize=(width, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height)
     goals = [s.goal[None] for k in shown for s in found[k].solutions.values()]
     bounds = box_around(np.concatenate([*goals, *(found[k].positions for k in shown)]))
     for place, index in enumerate(shown, 1):
@@ -104,10 +102,7 @@ def _caption(axes: Any, scene: BodyScene, name: str, body: BodySolution) -> None
         (22.0, name, {"fontsize": 11, "fontweight": "bold", "color": INK}),
         (9.0, ending, {"fontsize": 8, "color": LIMIT if missed else GOAL}),
     )
-    for points, text, style in lines:
-        axes.annotate(
-            text, (0.5, 1.0), (0.0, points), "axes fraction", "offset points", ha="center", **style
-        )
+    write_above(axes, lines)
 
 
 def _legend(figure: "Figure", scene: BodyScene, shown: int) -> None:

@@ -63,8 +63,7 @@ def draw_planar(
         else:
             axes.plot(*seen.T, **ROUND)
     final = _in_plane(solution, solution.positions)
-    touched = {name.rsplit(" ", 1)[0] for name in solution.limits_touched()}
-    at_limit = [k for k, name in enumerate(solution.chain.names) if name in touched]
+    at_limit = [joint for joint, _ in solution.resting_axes()]
     look = looks["final"]
     axes.plot(*final.T, color=look["color"], lw=look["lw"], zorder=5)
     axes.plot(*final.T, "o", ms=6, mfc="white", mec=look["color"], mew=1.6, zorder=6)

@@ -1,34 +1,21 @@
-"""Results for machines: JSON objects and CSV rows. Angles in degrees, full precision.
+"""Results for machines: JSON objects and CSV rows. Angles in degrees, full precision."""
 
-Keys are never taken away while `SCHEMA` stays the same number.
-"""
-
-import csv
-import io
-import json
-from collections.abc import Iterable, Sequence
-from math import isfinite
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from limbik.core.body import BodySolution, bodies_met, chain_solutions
 from limbik.core.bodyscene import BodyScene
-from limbik.core.chain import AXES
 from limbik.core.errors import Fault, InputError, LimbikError, PluginError
+from limbik.core.goals import PLACE
 from limbik.core.posegoals import PoseSolution
 from limbik.core.scene import Scene
 from limbik.core.solution import Solution
 from limbik.core.solution2d import PlanarSolution, PlaneFrom
 from limbik.core.solving import are_met
+from limbik.plugins.output.encoding import csv_text
 from limbik.plugins.output.servo import ServoPose
-
-SCHEMA = 1
-
-
-def to_json(record: dict[str, Any]) -> str:
-    """Write a record as one JSON object; a number that is not finite becomes null."""
-    return json.dumps(_finite({"schema": SCHEMA, **record}), indent=2, allow_nan=False)
 
 
 def solve_record(
@@ -178,19 +165,13 @@ def _fault_record(fault: Fault) -> dict[str, Any]:
 
 def solve_rows(scene: Scene, solutions: Sequence[Solution]) -> str:
     """Write a CSV table, one line a goal; its columns name, x, y, z make it a goal file again."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(_columns(scene.chain.names))
+    head = ["name", *PLACE, "status", "distance", "iterations", *scene.chain.axis_names]
+    rows = []
     for name, solution in zip(scene.goal_names, solutions, strict=True):
-        head = [name, *solution.goal.tolist(), status_label(solution)]
-        counts = [float(solution.distance), int(solution.iterations)]
-        writer.writerow([*head, *counts, *np.degrees(solution.angles).ravel().tolist()])
-    return text.getvalue()
-
-
-def _columns(names: Iterable[str]) -> list[str]:
-    angles = [f"{name} {axis}" for name in names for axis in AXES]
-    return ["name", "x", "y", "z", "status", "distance", "iterations", *angles]
+        ending = [status_label(solution), float(solution.distance), int(solution.iterations)]
+        angles = np.degrees(solution.angles).ravel().tolist()
+        rows.append([name, *solution.goal.tolist(), *ending, *angles])
+    return csv_text(head, rows)
 
 
 def status_label(solution: Solution) -> str:
@@ -202,17 +183,6 @@ def outcome(solution: Solution) -> str:
     """Give the status for people, with what else they should know."""
     label = status_label(solution)
     return f"{label} ({solution.remark})" if solution.remark else label
-
-
-def _finite(value: Any) -> Any:
-    """Replace what JSON cannot hold by null."""
-    if isinstance(value, float):
-        return value if isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(inner) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [_finite(inner) for inner in value]
-    return value
 
 
 def servo_record(pose: ServoPose) -> dict[str, Any]:

@@ -215,10 +215,9 @@ def read_profile(source: str | Path, chain: Chain) -> Profile:
         SceneError: The file is wrong; each fault has its line.
     """
     if str(source) in MODELS:
-        spans = chain.high - chain.low
-        axes = [(j, a) for j in range(len(chain) - 1) for a in range(3) if spans[j, a] > 0.0]
         settings = MODELS[str(source)]
-        return Profile({key: Servo(id=k, **settings) for k, key in enumerate(axes, 1)})
+        servos = {key: Servo(id=k, **settings) for k, key in enumerate(chain.moving_axes, 1)}
+        return Profile(servos)
     if not Path(source).suffix:
         hint = near_match(str(source), list(MODELS))
         message = f"no servo profile is called '{source}'; known: {', '.join(MODELS)}, or a file"
@@ -237,7 +236,7 @@ def _read_file(source: str | Path, chain: Chain) -> Profile:
         message = f"no servo model is called '{model.model}'; known: {', '.join(MODELS)}"
         hint = near_match(model.model, list(MODELS))
         faults.append(document.fault("choice", message, ("model",), hint=hint))
-    names = [f"{name} {axis}" for name in chain.names for axis in AXES]
+    names = chain.axis_names
     seen: dict[int, str] = {}
     for name, servo in model.joints.items():
         if name not in names:

@@ -1,6 +1,6 @@
 """Tables for people, by rich: plain text off a terminal, no colours with NO_COLOR."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,19 @@ _FIXED_WIDTH = 38  # status, distance, angle, rounds and the gaps between them
 _WIDE = 10_000  # columns off a terminal: a table in a file is never folded
 
 
+def new_table(*titles: str, right: Collection[str] = ()) -> Table:
+    """A table without a frame.
+
+    Args:
+        titles: Of the columns.
+        right: Those of columns of numbers, set to the right.
+    """
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for title in titles:
+        table.add_column(title, justify="right" if title in right else "left")
+    return table
+
+
 def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     """Print goal, status, distance, rounds and the angles of the joints that move [deg].
 
@@ -36,14 +49,9 @@ def print_solutions(scene: Scene, solutions: Sequence[Solution]) -> None:
     if left_out:
         joints = _joint_columns(scene, solutions, 0)
         shown, left_out = _fitting(joints, room)
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column("goal")
-    table.add_column("status")
-    table.add_column("distance", justify="right")
     posed = any(isinstance(solution, PoseSolution) for solution in solutions)
-    if posed:
-        table.add_column("off", justify="right")
-    table.add_column("rounds", justify="right")
+    numbers = ("distance", "off", "rounds") if posed else ("distance", "rounds")
+    table = new_table("goal", "status", *numbers, right=numbers)
     for title in shown:
         table.add_column(title, justify="right", no_wrap=True)
     for row, (name, solution) in enumerate(zip(scene.goal_names, solutions, strict=True)):
@@ -87,20 +95,14 @@ def _fitting(columns: dict[str, list[str]], room: int) -> tuple[list[str], int]:
     return shown, len(columns) - len(shown)
 
 
-def _moving(scene: Scene) -> list[int]:
-    """Joints worth a column: those that can turn, without the end, whose angles move nothing."""
-    spans = scene.chain.high - scene.chain.low
-    return [joint for joint in range(len(scene.chain) - 1) if spans[joint].max() > 0.0]
-
-
 def _joint_columns(
     scene: Scene, solutions: Sequence[Solution], digits: int
 ) -> dict[str, list[str]]:
-    """Angles of every joint worth a column, a text for each goal, by title."""
+    """Angles of every joint that moves something, a text for each goal, by title."""
     poses = [np.degrees(solution.angles) for solution in solutions]
     return {
         f"{scene.chain.names[joint]} h/p/b": [_hpb(pose[joint], digits) for pose in poses]
-        for joint in _moving(scene)
+        for joint in dict.fromkeys(joint for joint, _ in scene.chain.moving_axes)
     }
 
 
@@ -116,9 +118,7 @@ def print_plugins(record: dict[str, Any]) -> None:
         record: As `limbik.plugins.output.listing.plugin_record` gives it.
     """
     console = new_console()
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for title in ("plug-in", "version", "origin", "status"):
-        table.add_column(title)
+    table = new_table("plug-in", "version", "origin", "status")
     for plugin in record["plugins"]:
         style = {"loaded": "green", "broken": "red"}.get(plugin["status"], "yellow")
         status = Text(plugin["status"], style=style)
@@ -142,9 +142,7 @@ def print_inspection(inspection: Inspection) -> None:
     """Print what a file holds: its joints, then chains one could solve."""
     console = new_console()
     console.print(Text(inspection.title, "bold"))
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for title in inspection.columns:
-        table.add_column(title)
+    table = new_table(*inspection.columns)
     for row in inspection.rows:
         table.add_row(*map(Text, row))
     console.print(table)
@@ -198,11 +196,8 @@ def new_console() -> Console:
 
 def print_comparison(scene: Scene, solutions: Mapping[str, Sequence[Solution]]) -> None:
     """Print one line a solver and goal, then how many goals each reaches."""
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for title in ("solver", "goal", "status"):
-        table.add_column(title)
-    for title in ("distance", "rounds"):
-        table.add_column(title, justify="right")
+    numbers = ("distance", "rounds")
+    table = new_table("solver", "goal", "status", *numbers, right=numbers)
     for solver, found in solutions.items():
         for name, solution in zip(scene.goal_names, found, strict=True):
             style = "green" if solution.reached else "red"
@@ -219,14 +214,11 @@ def print_servos(scene: Scene, poses: Sequence[ServoPose]) -> None:
     """Print one line a goal: each servo's tick, and how far off whole ticks end; or nothing."""
     if not poses:
         return
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column("goal")
-    for command in poses[0].commands:
-        table.add_column(f"{command.id} {command.joint} {command.axis}", justify="right")
-    table.add_column("distance", justify="right")
+    ticks = [f"{command.id} {command.joint} {command.axis}" for command in poses[0].commands]
+    table = new_table("goal", *ticks, "distance", right=(*ticks, "distance"))
     for name, pose in zip(scene.goal_names, poses, strict=True):
-        ticks = (str(command.tick) for command in pose.commands)
-        table.add_row(Text(name), *ticks, f"{pose.distance:.2g}")
+        told = (str(command.tick) for command in pose.commands)
+        table.add_row(Text(name), *told, f"{pose.distance:.2g}")
     console = new_console()
     console.print("\nservo ticks")
     console.print(table)

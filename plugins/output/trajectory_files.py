@@ -1,41 +1,33 @@
 """A trajectory and its joint motion as CSV, JSON, NPZ and TUM poses (J-08). Angles in degrees."""
 
-import csv
-import io
 from typing import Any
 
 import numpy as np
 
 from limbik.core.chain import AXES, Chain
 from limbik.core.frames import Z_UP
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_quaternion
 from limbik.core.scene import Scene
+from limbik.plugins.output.encoding import csv_text, npz_bytes
 from limbik.plugins.output.servo_motion import ServoMotion
 from limbik.plugins.paths.joints import JointMotion
 from limbik.plugins.paths.program import Trajectory
-from limbik.plugins.paths.quaternions import continuous, from_matrix
+from limbik.plugins.paths.quaternions import continuous
 from limbik.plugins.paths.samples import Samples
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 MOTION = ("speed", "distance", "reached")
 
 
-def moving_axes(chain: Chain) -> list[tuple[int, int]]:
-    """Return joint and axis of all that can turn; the end's own axes move nothing and are out."""
-    spans = (chain.high - chain.low)[:-1]
-    return [(joint, axis) for joint, axis in np.argwhere(spans > 0.0).tolist()]
-
-
 def axis_names(chain: Chain) -> list[str]:
     """Return names such as `elbow pitch` of the moving axes."""
-    return [f"{chain.names[joint]} {AXES[axis]}" for joint, axis in moving_axes(chain)]
+    return [f"{chain.names[joint]} {AXES[axis]}" for joint, axis in chain.moving_axes]
 
 
 def axis_angles(motion: JointMotion) -> Array:
     """Return the moving axes' angles in degrees, (m, k)."""
-    axes = moving_axes(motion.solution.chain)
-    joints, which = [joint for joint, _ in axes], [axis for _, axis in axes]
-    return np.degrees(motion.angles[:, joints, which])
+    joints, axes = np.array(motion.solution.chain.moving_axes, int).reshape(-1, 2).T
+    return np.degrees(motion.angles[:, joints, axes])
 
 
 def motion_rows(motion: JointMotion, servos: ServoMotion | None = None) -> str:
@@ -44,15 +36,12 @@ def motion_rows(motion: JointMotion, servos: ServoMotion | None = None) -> str:
     With servos their ticks follow.
     """
     samples, chain = motion.samples, motion.solution.chain
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     titles = [] if servos is None else servos.titles
-    writer.writerow(["time", *POSE, *MOTION, *axis_names(chain), *titles])
+    head = ["time", *POSE, *MOTION, *axis_names(chain), *titles]
     reached = np.asarray(motion.solution.reached, int).tolist()
     ticks = [[]] * len(samples) if servos is None else servos.ticks.tolist()
-    for row, done, told in zip(_table(motion, samples).tolist(), reached, ticks, strict=True):
-        writer.writerow([*row[:10], done, *row[10:], *told])
-    return text.getvalue()
+    table = zip(_table(motion, samples).tolist(), reached, ticks, strict=True)
+    return csv_text(head, ([*row[:10], done, *row[10:], *told] for row, done, told in table))
 
 
 def _table(motion: JointMotion, samples: Samples) -> Array:
@@ -71,26 +60,22 @@ def _table(motion: JointMotion, samples: Samples) -> Array:
 def motion_arrays(motion: JointMotion, servos: ServoMotion | None = None) -> bytes:
     """Write a compressed NPZ file; angles in radians like all arrays of limbik."""
     samples, solution = motion.samples, motion.solution
-    told: dict[str, Any] = (
-        {} if servos is None else {"servo_ids": servos.ids, "servo_ticks": servos.ticks}
-    )
-    content = io.BytesIO()
-    np.savez_compressed(
-        content,
-        times=samples.times,
-        positions=samples.positions,
-        quaternions=samples.quaternions,
-        velocities=samples.velocities,
-        speeds=samples.speeds,
-        angles=motion.angles,
-        joint_speeds=motion.speeds,
-        distance=np.asarray(solution.distance),
-        reached=np.asarray(solution.reached),
-        orientation_error=motion.orientation_error,
-        joints=np.array(solution.chain.names),
-        **told,
-    )
-    return content.getvalue()
+    arrays: dict[str, Any] = {
+        "times": samples.times,
+        "positions": samples.positions,
+        "quaternions": samples.quaternions,
+        "velocities": samples.velocities,
+        "speeds": samples.speeds,
+        "angles": motion.angles,
+        "joint_speeds": motion.speeds,
+        "distance": np.asarray(solution.distance),
+        "reached": np.asarray(solution.reached),
+        "orientation_error": motion.orientation_error,
+        "joints": np.array(solution.chain.names),
+    }
+    if servos is not None:
+        arrays |= {"servo_ids": servos.ids, "servo_ticks": servos.ticks}
+    return npz_bytes(arrays)
 
 
 def tum_rows(samples: Samples, right_handed: bool = False) -> str:
@@ -103,7 +88,7 @@ def tum_rows(samples: Samples, right_handed: bool = False) -> str:
     places, turned = samples.positions, samples.quaternions
     if right_handed:
         places = Z_UP.points(places)
-        turned = continuous(from_matrix(Z_UP.rotations(samples.rotations)))
+        turned = continuous(matrix_to_quaternion(Z_UP.rotations(samples.rotations)))
     table = np.column_stack([samples.times, places, turned[:, [1, 2, 3, 0]]])
     head = "# timestamp x y z qx qy qz qw\n"
     return head + "".join(" ".join(map(repr, row)) + "\n" for row in table.tolist())

@@ -15,9 +15,10 @@ from limbik.plugins.output.plot import (
     LOOK,
     PAPER,
     SPACE,
+    new_figure,
     picture,
 )
-from limbik.plugins.output.trajectory_files import axis_angles, axis_names, moving_axes
+from limbik.plugins.output.trajectory_files import axis_angles, axis_names
 from limbik.plugins.paths.joints import JointMotion
 from limbik.plugins.paths.program import Stretch, Trajectory
 
@@ -51,14 +52,10 @@ def draw_motion(
 
 
 def _figure(scene: Scene, trajectory: Trajectory, motion: JointMotion) -> "Figure":
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    axes = moving_axes(scene.chain)
+    axes = scene.chain.moving_axes
     rows = -(-len(axes) // COLUMNS)
     height = 7.7 + 2.1 * rows
-    figure = Figure(figsize=(14.0, height), facecolor=PAPER)
-    FigureCanvasAgg(figure)
+    figure = new_figure(14.0, height)
     ratios = [6.0, 2.1 * rows]
     outer = figure.add_gridspec(2, 1, height_ratios=ratios, hspace=0.26)
     top = outer[0].subgridspec(2, 2, width_ratios=(1.1, 1.0), wspace=0.06, hspace=0.16)

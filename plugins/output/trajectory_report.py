@@ -15,6 +15,7 @@ from limbik.core.solution import Continuity
 from limbik.core.solving import scene_solver
 from limbik.core.whole import prepare
 from limbik.plugins.output.files import write_whole
+from limbik.plugins.output.plot import check_plot, form_of
 from limbik.plugins.output.servo import read_profile
 from limbik.plugins.output.servo_motion import ServoMotion, servo_motion
 from limbik.plugins.paths.joints import JointMotion, degrees_to_limits, joint_motion
@@ -61,8 +62,6 @@ def run_trajectory(
         EnvironmentProblem: scipy or matplotlib is missing, or a file cannot be written.
     """
     if files.plot is not None:
-        from limbik.plugins.output.plot import check_plot
-
         check_plot(files.plot)
     profile = None if files.servo is None else read_profile(files.servo, scene.chain)
     posed = _pose_solver(scene)
@@ -78,7 +77,7 @@ def run_trajectory(
     servos = None if profile is None else servo_motion(profile, motion)
     _write(scene, planned, motion, servos, files)
     if as_json:
-        from limbik.plugins.output.records import to_json
+        from limbik.plugins.output.encoding import to_json
         from limbik.plugins.output.trajectory_files import motion_record
 
         print(to_json(motion_record(scene, planned, motion, servos)))
@@ -120,8 +119,7 @@ def _write(
     if files.plot is not None:
         from limbik.plugins.output.trajectory_plot import draw_motion
 
-        form = files.plot.suffix.lower().lstrip(".")
-        write_whole(files.plot, draw_motion(scene, planned, motion, form))
+        write_whole(files.plot, draw_motion(scene, planned, motion, form_of(files.plot)))
 
 
 def _lines(planned: Trajectory, motion: JointMotion, servos: ServoMotion | None) -> list[str]:

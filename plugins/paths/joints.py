@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from limbik.core.chain import AXES, Chain
 from limbik.core.errors import Fault, InputError
 from limbik.core.posegoals import PoseBatch, PoseSolution
-from limbik.core.rotation import Array, matrix_to_hpb
+from limbik.core.rotation import Array, matrix_to_hpb, matrix_to_quaternion
 from limbik.core.solution import Continuity, Solution, Status
 from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
-from limbik.plugins.paths.quaternions import from_matrix, half_angle, short_way
+from limbik.plugins.paths.quaternions import half_angle, short_way
 from limbik.plugins.paths.samples import Samples
 
 Kind = Literal["out-of-reach", "blocked", "stopped", "jump", "limit", "speed"]
@@ -117,7 +117,7 @@ class JointMotion:
     @property
     def orientation_error(self) -> Array:
         """Angle between the end's orientation and the one asked for, (m,) [rad]."""
-        found = from_matrix(self.solution.rotations[:, -1])
+        found = matrix_to_quaternion(self.solution.rotations[:, -1])
         return 2.0 * half_angle(found, short_way(found, self.samples.quaternions))
 
 

@@ -9,8 +9,7 @@ from limbik.core.chain import Chain
 from limbik.core.errors import Fault, InputError
 from limbik.core.frames import Z_UP
 from limbik.core.pose import forward_kinematics
-from limbik.core.rotation import Array, hpb_to_matrix
-from limbik.plugins.paths.quaternions import from_matrix, to_matrix
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_quaternion, quaternion_to_matrix
 from limbik.plugins.paths.scipy_parts import rotation_class
 
 SQUARE = 1e-6  # largest error of RᵀR that is taken for rounding of the input (T A2)
@@ -43,13 +42,13 @@ class KeyPoint:
         m = _array(matrix, (4, 4), "matrix", name)
         if np.abs(m[3] - (0.0, 0.0, 0.0, 1.0)).max() > SQUARE:
             raise _error(f"the matrix's last row must be 0 0 0 1, not {m[3].tolist()}", name)
-        return cls(m[:3, 3].copy(), from_matrix(_rotation(m[:3, :3], name)), name)
+        return cls(m[:3, 3].copy(), matrix_to_quaternion(_rotation(m[:3, :3], name)), name)
 
     @classmethod
     def from_rotation(cls, position: ArrayLike, rotation: ArrayLike, name: str = "") -> "KeyPoint":
         """Make a key point of a position (3,) and a rotation matrix (3, 3); errors as above."""
         turned = _rotation(_array(rotation, (3, 3), "rotation", name), name)
-        return cls(_array(position, (3,), "position", name), from_matrix(turned), name)
+        return cls(_array(position, (3,), "position", name), matrix_to_quaternion(turned), name)
 
     @classmethod
     def from_quaternion(
@@ -85,19 +84,19 @@ class KeyPoint:
         """
         turn = _array(angles, (3,), "angles", name)
         place = _array(position, (3,), "position", name)
-        return cls(place, from_matrix(euler_matrix(turn, convention, name)), name)
+        return cls(place, matrix_to_quaternion(euler_matrix(turn, convention, name)), name)
 
     @classmethod
     def from_joints(cls, chain: Chain, angles: ArrayLike, name: str = "") -> "KeyPoint":
         """Make a key point of the pose a chain's end has at joint angles HPB [rad], (n, 3)."""
         pose = _array(angles, (len(chain), 3), "joint angles", name)
         positions, rotations = forward_kinematics(chain, pose)
-        return cls(positions[-1].copy(), from_matrix(rotations[-1]), name, pose)
+        return cls(positions[-1].copy(), matrix_to_quaternion(rotations[-1]), name, pose)
 
     @property
     def rotation(self) -> Array:
         """Orientation as a matrix, (3, 3)."""
-        return to_matrix(self.quaternion)
+        return quaternion_to_matrix(self.quaternion)
 
     @property
     def matrix(self) -> Array:
@@ -108,7 +107,7 @@ class KeyPoint:
 
     def to_left_handed(self) -> "KeyPoint":
         """Return a key point given in the right-handed world with Z up in limbik's world."""
-        turned = from_matrix(Z_UP.rotations(self.rotation))
+        turned = matrix_to_quaternion(Z_UP.rotations(self.rotation))
         return KeyPoint(Z_UP.points(self.position), turned, self.name)
 
 

@@ -6,14 +6,14 @@ from math import inf, isfinite, pi
 import numpy as np
 
 from limbik.core.errors import Fault, InputError
-from limbik.core.rotation import Array
+from limbik.core.rotation import Array, matrix_to_quaternion
 from limbik.plugins.paths.arc import Arc as ArcShape
 from limbik.plugins.paths.arc import arc_about, arc_through, is_huge
 from limbik.plugins.paths.cubic import is_uneven, spline
 from limbik.plugins.paths.keypoint import KeyPoint
 from limbik.plugins.paths.moves import Arc, ArcAbout, Limits, Move, Spline, Turn, as_vector
 from limbik.plugins.paths.profile import Profile
-from limbik.plugins.paths.quaternions import from_matrix, half_angle, product, short_way
+from limbik.plugins.paths.quaternions import half_angle, product, short_way
 from limbik.plugins.paths.ramps import Rates, from_ramp_times, profile
 from limbik.plugins.paths.scipy_parts import rotation_class
 from limbik.plugins.paths.shapes import Polyline, Shape, Standstill
@@ -133,7 +133,7 @@ def _about(start: KeyPoint, move: ArcAbout, arc: ArcShape) -> tuple[KeyPoint, ..
     if move.orientation is not None:
         return start, KeyPoint(end[0], move.orientation.quaternion, move.orientation.name)
     turned = rotation_class().from_rotvec(arc.axis * arc.sweep).as_matrix()
-    return start, KeyPoint(end[0], product(from_matrix(turned), start.quaternion))
+    return start, KeyPoint(end[0], product(matrix_to_quaternion(turned), start.quaternion))
 
 
 def _turning(move: Move, points: tuple[KeyPoint, ...], shape: Shape) -> Turning:
@@ -155,7 +155,7 @@ def _carried(start: Array, shape: Shape) -> Turning:
     shape.knots = np.linspace(0.0, shape.knots[-1], parts + 1)
     angles = np.linspace(0.0, shape.sweep, parts + 1)
     turned = rotation_class().from_rotvec(angles[:, None] * shape.axis).as_matrix()
-    return Turning(shape, product(from_matrix(turned), start), "length", False, 0.0)
+    return Turning(shape, product(matrix_to_quaternion(turned), start), "length", False, 0.0)
 
 
 def _rates(limits: Limits, shape: Shape, turning: Turning) -> Rates:

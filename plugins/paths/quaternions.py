@@ -15,52 +15,6 @@ EITHER_WAY = (
 )  # products down to here count as a right angle: both ways round are equal (T A21)
 
 
-def from_matrix(rotations: ArrayLike) -> Array:
-    """Return the unit quaternions of rotation matrices.
-
-    Args:
-        rotations: (..., 3, 3), columns are the frame's axes.
-
-    Returns:
-        (..., 4), the largest part positive.
-    """
-    m = np.asarray(rotations, np.float64)
-    diagonal = np.diagonal(m, axis1=-2, axis2=-1)
-    x, y, z = np.moveaxis(diagonal, -1, 0)
-    sizes = np.stack([x + y + z, x - y - z, y - x - z, z - x - y], -1)  # 4 part² - 1
-    ax, ay, az = (
-        m[..., 2, 1] - m[..., 1, 2],
-        m[..., 0, 2] - m[..., 2, 0],
-        m[..., 1, 0] - m[..., 0, 1],
-    )
-    xy, xz, yz = (
-        m[..., 1, 0] + m[..., 0, 1],
-        m[..., 0, 2] + m[..., 2, 0],
-        m[..., 2, 1] + m[..., 1, 2],
-    )
-    w2, x2, y2, z2 = np.moveaxis(1.0 + sizes, -1, 0)
-    rows = [[w2, ax, ay, az], [ax, x2, xy, xz], [ay, xy, y2, yz], [az, xz, yz, z2]]
-    table = np.stack([np.stack(row, -1) for row in rows], -2)  # 4 q qᵀ
-    largest = sizes.argmax(-1)
-    q = np.take_along_axis(table, largest[..., None, None], -2)[..., 0, :]
-    return np.asarray(q / np.linalg.norm(q, axis=-1, keepdims=True))
-
-
-def to_matrix(quaternions: ArrayLike) -> Array:
-    """Return the rotation matrices of unit quaternions.
-
-    Args:
-        quaternions: (..., 4).
-    """
-    w, x, y, z = np.moveaxis(np.asarray(quaternions, np.float64), -1, 0)
-    rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, -1) for row in rows], -2)
-
-
 def product(first: ArrayLike, second: ArrayLike) -> Array:
     """Return `first ⊗ second`: the matrix product of the two rotations, (..., 4)."""
     a, b, c, d = np.moveaxis(np.asarray(first, np.float64), -1, 0)

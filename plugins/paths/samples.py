@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from limbik.core.errors import Fault, InputError
-from limbik.core.rotation import Array
-from limbik.plugins.paths.quaternions import half_angle, short_way, to_matrix
+from limbik.core.rotation import Array, quaternion_to_matrix
+from limbik.plugins.paths.quaternions import half_angle, short_way
 
 MOST_SAMPLES = 10_000_000
 
@@ -39,7 +39,7 @@ class Samples:
     @property
     def rotations(self) -> Array:
         """Orientations as matrices, (m, 3, 3)."""
-        return to_matrix(self.quaternions)
+        return quaternion_to_matrix(self.quaternions)
 
     @property
     def speeds(self) -> Array:

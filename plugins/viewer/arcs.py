@@ -14,10 +14,9 @@ import numpy as np
 from limbik.core.binding import Bound
 from limbik.core.chain import AXES, Chain
 from limbik.core.jointlimits import margin_of, pulled
-from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb
+from limbik.core.rotation import Array, hpb_to_matrix, matrix_to_hpb, quaternion_to_matrix
 from limbik.core.solution import AT_LIMIT
 from limbik.core.solution2d import PlanarSolution
-from limbik.plugins.paths.quaternions import to_matrix
 from limbik.plugins.viewer.session import Shown
 from limbik.plugins.viewer.shapes import along, segments
 
@@ -105,7 +104,9 @@ def _rim(bound: Bound, mirrored: bool) -> Array | None:
     around = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
     s, c = np.sin(BEHIND), np.cos(BEHIND)
     ways = np.stack([s * np.cos(around), s * np.sin(around), np.full(AROUND, c)], 1)
-    found = [pulled(bound, mirrored, matrix_to_hpb(to_matrix(turn))) for turn in along(ways)]
+    found = [
+        pulled(bound, mirrored, matrix_to_hpb(quaternion_to_matrix(turn))) for turn in along(ways)
+    ]
     if all(margin > 0.0 for _, margin in found):
         return None
     return np.array([hpb_to_matrix(turn)[:, 2] for turn, _ in found])

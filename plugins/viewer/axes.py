@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from limbik.core.frames import Y_UP
-from limbik.core.rotation import Array
-from limbik.plugins.paths.quaternions import from_matrix, to_matrix
+from limbik.core.rotation import Array, matrix_to_quaternion, quaternion_to_matrix
 
 
 def to_page(points: ArrayLike) -> Array:
@@ -24,13 +23,15 @@ def from_page(points: ArrayLike) -> Array:
 
 def turn_to_page(rotations: ArrayLike) -> Array:
     """Return rotation matrices (..., 3, 3) as the page's quaternions (w, x, y, z), (..., 4)."""
-    return from_matrix(Y_UP.rotations(rotations))
+    return matrix_to_quaternion(Y_UP.rotations(rotations))
 
 
 def turn_from_page(quaternions: ArrayLike) -> Array:
     """Return the page's quaternions (..., 4) as rotation matrices, (..., 3, 3)."""
     given = np.asarray(quaternions, np.float64)
-    return Y_UP.rotations(to_matrix(given / np.linalg.norm(given, axis=-1, keepdims=True)))
+    return Y_UP.rotations(
+        quaternion_to_matrix(given / np.linalg.norm(given, axis=-1, keepdims=True))
+    )
 
 
 def frame_to_page(axes: ArrayLike) -> Array:
@@ -40,4 +41,4 @@ def frame_to_page(axes: ArrayLike) -> Array:
         axes: World directions as columns, (3, 3), that are right, up and toward the viewer or the
             like: a right-handed frame to the eye.
     """
-    return from_matrix(to_page(np.asarray(axes).T).T)
+    return matrix_to_quaternion(to_page(np.asarray(axes).T).T)

@@ -30,7 +30,6 @@ from limbik.plugins.viewer.shapes import along, ball, bone, cone, segments
 NOWHERE = np.zeros((1, 2, 3))
 STANDS_OUT = 1.15  # size of a joint that blocks; others may be in the same place
 MOST_ARCS = 8  # joints of a chain whose ranges are shown unasked
-_AXES = {"x": 0, "y": 1, "z": 2}
 
 
 class Limb:
@@ -215,7 +214,7 @@ class ChainDrawing:
                 self._cone.remove()
                 self._cone = None
             if wanted is not None:
-                axis = chain.base_rotation[:, _AXES[wanted.axis[0]]]
+                axis = chain.base_rotation[:, "xyz".index(wanted.axis[0])]
                 way = to_page(axis if wanted.axis[1] == "+" else -axis)
                 vertices, faces = cone(np.radians(wanted.half_angle))
                 self._cone = self._scene.add_mesh_simple(
@@ -258,8 +257,7 @@ class SkeletonDrawing:
 
 def blocking(solution: Solution) -> set[int]:
     """Return the indices of joints that rest on an end of a range."""
-    names = {text.rsplit(" ", 1)[0] for text in solution.limits_touched()}
-    return {joint for joint, name in enumerate(solution.chain.names) if name in names}
+    return {joint for joint, _ in solution.resting_axes()}
 
 
 def bend_direction(solution: Solution) -> tuple[Array, Array] | None:

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from limbik.core.chain import Chain, Joint
+from limbik.core.chain import Chain, Joint, vector
 from limbik.core.errors import LimbikError
 from limbik.core.params import member_name, model, sample
 from limbik.core.pole import Pole, PoleRotor
-from limbik.core.pose import forward_kinematics
 from limbik.core.posegoals import WholeSolver
 from limbik.core.registry import Registry
 from limbik.core.rotation import Array
@@ -221,7 +220,7 @@ class Setup:
 
     def with_pole(self, position: Array) -> "Setup":
         """Return the setup with its pole elsewhere, (3,) [length]; the rotor stays."""
-        place = tuple(checked(position, (3,), "pole").tolist())
+        place = vector(checked(position, (3,), "pole"))
         return self._changed(pole=self.pole.model_copy(update={"position": place}))
 
     def with_rotor(self, rotor: str | dict[str, Any] | None) -> "Setup":
@@ -335,7 +334,6 @@ def _fitting(settings: Settings, in_plane: bool) -> Settings:
 
 def _beside(chain: Chain) -> Pole:
     """Return a pole for a chain that has none: off the middle of its rest pose, along y."""
-    positions, rotations = forward_kinematics(chain, chain.rest)
+    positions, rotations = chain.rest_pose
     place = (positions[0] + positions[-1]) / 2.0 + 0.8 * chain.length * rotations[0, :, 1]
-    x, y, z = np.round(place, 6).tolist()
-    return Pole(position=(x, y, z))
+    return Pole(position=vector(np.round(place, 6)))

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from limbik.core.chain import AXES
 from limbik.core.slots import LIMIT, SOLVER
 from limbik.core.whole import OWN_SOLVERS
 from limbik.plugins.viewer.controls import Control, value_at
@@ -15,7 +16,6 @@ from limbik.plugins.viewer.widgets import add_control
 NOBODY = "nobody"
 LAST = 100.0  # place in its tab
 OF_FK = ("ik", "fk_strength", "fk_mix")
-HEADING_PITCH_BANK = ("heading", "pitch", "bank")
 RANGES = "ranges"
 
 
@@ -168,7 +168,7 @@ class SolverPanel:
             joint = Control(("joint",), "choice", choices=names, text="what is below is about it")
             add_control(gui, joint, self._joint, self._choose_joint)
             turn = np.degrees(self._setup.fk[self._at])
-            for axis, angle in zip(HEADING_PITCH_BANK, turn.tolist(), strict=True):
+            for axis, angle in zip(AXES, turn.tolist(), strict=True):
                 text = "FK offset from the rest pose [deg]"
                 control = Control((axis,), "float", -180.0, 180.0, text=text)
                 add_control(gui, control, angle, self._turn)
@@ -212,7 +212,7 @@ class SolverPanel:
     def _turn(self, control: Control, value: Any) -> bool:
         at = self._at
         turn = self._setup.fk[at].copy()
-        turn[HEADING_PITCH_BANK.index(control.path[0])] = np.radians(value)
+        turn[AXES.index(control.path[0])] = np.radians(value)
         return self._try(lambda setup: setup.with_fk(at, turn))
 
     def _set_apart(self, control: Control, value: Any) -> bool:

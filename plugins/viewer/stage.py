@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from viser import ViserServer
 
-from limbik.core.pose import forward_kinematics
 from limbik.core.rotation import Array
 from limbik.plugins.viewer.axes import frame_to_page, to_page
 from limbik.plugins.viewer.drawing import line_colours
@@ -61,7 +60,7 @@ def seen_points(session: Session, shown: dict[str, Shown]) -> Array:
         chained = session.chains[name]
         chain = one.solution.chain
         above = ABOVE * chain.length * np.array([0.0, 1.0, 0.0])
-        parts += [one.positions, forward_kinematics(chain, chain.rest)[0]]
+        parts += [one.positions, chain.rest_pose[0]]
         goals = chained.to_world(chained.goal)[None]
         if session.body is None and (session.follow or session.flat is not None):
             path = session.path.goals[name]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from limbik.core.chain import Chain
-from limbik.core.pose import forward_kinematics
+from limbik.core.pose import forward_kinematics, spread_poses
 from limbik.core.rotation import Array
 
 _FLAT = 1e-9  # thickness over length
@@ -32,9 +32,8 @@ class Flat:
 
         It is tried out: the joints take poses from all over their ranges.
         """
-        low, high = np.maximum(chain.low, -np.pi), np.minimum(chain.high, np.pi)
         shares = np.random.default_rng(0).random((_POSES, len(chain), 3))
-        positions, _ = forward_kinematics(chain, low + shares * (high - low))
+        positions, _ = forward_kinematics(chain, spread_poses(chain, shares))
         points = positions.reshape(-1, 3) - positions[0, 0]
         _, sizes, rows = np.linalg.svd(points - points.mean(0))
         if sizes[2] > _FLAT * chain.length * len(points) or sizes[1] <= _FLAT * chain.length:

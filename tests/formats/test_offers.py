@@ -1,6 +1,7 @@
 """Formats come through hooks as strategies do; core names none; a bad one spoils nothing."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -8,8 +9,9 @@ from typing import Any
 import pytest
 
 from limbik import Chain, Joint, Registry, hookimpl
+from limbik.core.bodyscene import read_body
 from limbik.core.errors import PluginError, SceneError
-from limbik.core.formats import Body, Inspection, Output, SceneInput
+from limbik.core.formats import Body, Inspection, Output, SceneInput, SkeletonInput
 from limbik.core.scene import read_scene
 from limbik.core.settings import Model
 from limbik.plugins.output.baking import inspect_file, output_for
@@ -99,6 +101,21 @@ def test_an_input_that_falls_over_is_blamed(offer: Offer, tmp_path: Path) -> Non
     (tmp_path / "scene.yaml").write_text(SCENE)
     with pytest.raises(PluginError, match=r"reading s\.stick failed: KeyError: 'length'"):
         read_scene(tmp_path / "scene.yaml", registry)
+
+
+def test_an_input_of_skeletons_that_falls_over_is_blamed(offer: Offer, tmp_path: Path) -> None:
+    def fall_over(model: Stick, folder: Path) -> Any:
+        raise KeyError("length")
+
+    registry = offer(inputs=(replace(STICK, skeleton=SkeletonInput(Stick, fall_over)),))
+    (tmp_path / "scene.yaml").write_text(
+        "limbik: 1\nskeleton: {stick: s.stick}\n"
+        "chains: [{name: arm, base: base, end: tip, goals: [{position: [0, 1, 2]}]}]\n",
+        encoding="utf-8",
+    )
+
+    with pytest.raises(PluginError, match=r"reading s\.stick failed: KeyError: 'length'"):
+        read_body(tmp_path / "scene.yaml", registry)
 
 
 BAD = {

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from limbik.core.rotation import hpb_to_matrix
-from limbik.plugins.paths.quaternions import to_matrix
+from limbik.core.rotation import hpb_to_matrix, quaternion_to_matrix
 from limbik.plugins.viewer.arcs import arcs
 from limbik.plugins.viewer.axes import (
     frame_to_page,
@@ -34,7 +33,7 @@ def test_turning_and_going_to_the_page_commute(
     hpb: tuple[float, ...], point: tuple[float, ...]
 ) -> None:
     turn = hpb_to_matrix(hpb)
-    on_page = to_matrix(turn_to_page(turn)) @ to_page(point)
+    on_page = quaternion_to_matrix(turn_to_page(turn)) @ to_page(point)
     np.testing.assert_allclose(
         on_page, to_page(turn @ point), atol=1e-9 * (1 + np.abs(point).max())
     )
@@ -50,7 +49,7 @@ def test_right_of_somebody_who_looks_along_z_is_right_on_the_page() -> None:
 @given(points)
 def test_a_bone_points_from_joint_to_joint(way: tuple[float, ...]) -> None:
     length = np.linalg.norm(way)
-    turned = to_matrix(along(np.array([way])))[0] @ [0.0, 0.0, 1.0]
+    turned = quaternion_to_matrix(along(np.array([way])))[0] @ [0.0, 0.0, 1.0]
     if length > 1e-150:
         np.testing.assert_allclose(turned, np.array(way) / length, atol=1e-6)
 
@@ -122,7 +121,9 @@ def test_the_plane_of_a_flat_scene_looks_right_handed_to_the_eye(opened: Opened)
     assert flat is not None
     right, up, toward = to_page(flat.axes.T)
     np.testing.assert_allclose(np.cross(right, up), toward, atol=1e-12)
-    np.testing.assert_allclose(to_matrix(frame_to_page(flat.axes))[:, 2], toward, atol=1e-12)
+    np.testing.assert_allclose(
+        quaternion_to_matrix(frame_to_page(flat.axes))[:, 2], toward, atol=1e-12
+    )
 
 
 def test_the_camera_sees_all_points(opened: Opened) -> None:

@@ -247,12 +247,13 @@ def _rotations(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 def _between(first: Array, second: Array, share: float) -> Array:
     """Return rotations a share of the short way from some to others, (m, 3, 3); NaN stays."""
-    from limbik.plugins.paths.quaternions import from_matrix, slerp, to_matrix
+    from limbik.core.rotation import matrix_to_quaternion, quaternion_to_matrix
+    from limbik.plugins.paths.quaternions import slerp
 
     asked = ~np.isnan(second[:, 0, 0])
     mixed = second.copy()
-    ends = from_matrix(first[asked]), from_matrix(second[asked])
-    mixed[asked] = to_matrix(slerp(np.full(int(asked.sum()), share), *ends))
+    ends = matrix_to_quaternion(first[asked]), matrix_to_quaternion(second[asked])
+    mixed[asked] = quaternion_to_matrix(slerp(np.full(int(asked.sum()), share), *ends))
     return mixed
 
 

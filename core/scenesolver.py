@@ -1,4 +1,4 @@
-"""What a scene says of solver and pole must fit together."""
+"""What a scene says of solver, pole and orientations must fit together."""
 
 from collections.abc import Iterator
 
@@ -6,6 +6,7 @@ from limbik.core.errors import Fault
 from limbik.core.scenegoals import turn_paths
 from limbik.core.scenemodel import SolveModel
 from limbik.core.settings import misfits_in_2d
+from limbik.core.whole import OWN_SOLVERS
 from limbik.core.yamlfile import Document, KeyPath
 
 
@@ -29,4 +30,16 @@ def solver_faults(model: SolveModel, document: Document) -> Iterator[Fault]:
     for path in turn_paths(model):
         message = "nothing turns with this goal; it moves a pole rotor"
         hint = "add 'rotor: arm' or 'rotor: leg' to the pole"
+        yield document.fault("solver", message, path, hint=hint)
+
+
+def turn_faults(model: SolveModel, turns_end: bool, document: Document) -> Iterator[Fault]:
+    """Check that what solves goals with an orientation turns the end; a trajectory plans it too."""
+    if turns_end or model.is_planned or model.solver == "2d":
+        return
+    if model.solver in OWN_SOLVERS and model.options.end_orientation:
+        return
+    for path in turn_paths(model):
+        message = "its orientation has no effect: the scene's solver goes to positions alone"
+        hint = "choose a solver of pose goals, see 'limbik plugins', or set end_orientation"
         yield document.fault("solver", message, path, hint=hint)
