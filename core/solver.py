@@ -17,6 +17,7 @@ from limbik.core.errors import InputError, PluginError
 from limbik.core.flatten import SLOT_ORDER, Plugs, flat_body, flat_choice, flat_options, flat_plugs
 from limbik.core.jit import Entry
 from limbik.core.jointlimits import bound_limits
+from limbik.core.portable import Portable
 from limbik.core.pose import stages_of
 from limbik.core.reach import pull_into_reach
 from limbik.core.registry import Registry
@@ -37,7 +38,7 @@ FAILED = 10  # status numbers from here on name the slot whose strategy failed
 THREAD_SHARE = 256  # goals a thread should at least have to be worth starting
 
 
-class Solver:
+class Solver(Portable):
     """Solves goals for one chain with one set of options; without state of its own.
 
     Args:
@@ -61,12 +62,9 @@ class Solver:
         registry: Registry | None = None,
         **options: Any,
     ) -> None:
-        expected(chain, Chain, "chain")
         own = Settings() if settings is None else expected(settings, Settings, "settings")
-        given = _joined(own, options)
-        self._check_fit(chain, given)
-        self.chain = chain
-        self.settings = given
+        self.chain, self.settings = expected(chain, Chain, "chain"), _joined(own, options)
+        self._check_fit(self.chain, self.settings)
         self.registry = Registry() if registry is None else registry
         self._look_up()
         self._fixed: tuple[Any, ...] = self._flatten()
@@ -79,21 +77,6 @@ class Solver:
             slot: self.registry.bind(slot, getattr(self.settings, slot)) for slot in self._slots
         }
         self.limits = bound_limits(self.chain, self.settings, self.registry)
-
-    def __copy__(self) -> Self:
-        """Share everything, what is compiled too."""
-        found = object.__new__(type(self))
-        found.__dict__.update(self.__dict__)
-        return found
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave out what is an address, or compiled, in this process only."""
-        return {name: value for name, value in self.__dict__.items() if name not in _OWN_PROCESS}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Look the strategies up again where this is unpickled or deeply copied."""
-        self.__dict__.update(state)
-        self._look_up()
 
     def altered(self, **options: Any) -> Self:
         """Return a solver of the same kind with some settings changed."""
@@ -412,6 +395,5 @@ def _joined(settings: Settings, options: dict[str, Any]) -> Settings:
     return read_model(Settings, {**settings.model_dump(exclude_unset=True), **options})
 
 
-_OWN_PROCESS = ("_kernel", "_plugs", "strategies", "limits")
 _LATE_STAGES = ("finish", "choice")
 _STATUS = {int(status): status for status in Status}
