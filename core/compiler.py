@@ -5,6 +5,7 @@ interpreter: `kernel` and `entry` give the function back, and the address of a s
 into a table of Python functions.
 """
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,6 +37,7 @@ _errors: Any = numba.core.errors
 _OPTIONS = {"nogil": True, "error_model": "numpy"}
 # LLVM's first level: the code is as fast as that of the third, and compiled a seventh sooner.
 _QUICK = type(_config.OPT)(1)
+_STYLE = re.compile(r"\x1b\[[0-9;]*m")
 _KERNELS = f"{__package__}.kernels."
 _LOCK = RLock()
 _COMPILED: dict[int, tuple[Any, Any]] = {}
@@ -143,7 +145,8 @@ def _compile(slot: Slot, strategy: Strategy) -> tuple[int, Any]:
 def _reason(error: Exception) -> str:
     """Pick what the author can use out of the compiler's report: the complaint and its place."""
     kept: list[str] = []
-    for line in filter(None, map(str.strip, str(error).splitlines())):
+    plain = _STYLE.sub("", str(error))  # numba writes in bold where colorama is installed
+    for line in filter(None, map(str.strip, plain.splitlines())):
         if line.startswith('File "'):
             return f"{' '.join(kept)} ({line.rstrip(':')})"
         if line.startswith("During:") and kept:

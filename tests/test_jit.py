@@ -151,6 +151,11 @@ def test_compilers_report_is_cut_down_to_complaint_and_line() -> None:
     assert "During" not in str(caught.value)
 
 
+def test_styles_of_the_compilers_report_do_not_reach_the_message() -> None:
+    report = '\x1b[1mFailed in nopython mode\nno such thing\n\x1b[1m\nFile "a.py", line 3:\x1b[0m'
+    assert compiler._reason(Exception(report)) == 'no such thing (File "a.py", line 3)'
+
+
 @compiled_only
 def test_arrays_of_another_layout_are_refused_not_misread() -> None:
     threshold = Registry(third_party=False).bind("bank_suppression", "threshold")

@@ -5,7 +5,7 @@ from math import inf
 from limbik.core.jit import kernel
 from limbik.core.kernels.spread import first_state, next_state, spread_angle
 from limbik.core.rotation import Array
-from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage, pull_inside
+from limbik.plugins.finish.linkage import ANGLES, HOME, Linkage, has_limit, pull_inside
 
 PUSH = 0.1  # [rad]
 
@@ -26,6 +26,8 @@ def off_home(chain: Linkage, scratch: Array) -> None:
 def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
     """Write another start into ANGLES: HOME, its mirror image, middles of ranges, then spread.
 
+    The middle of a joint's own limit is taken to be its zero pose.
+
     Args:
         number: From 0; the same number gives the same start.
         chain: The chain.
@@ -33,12 +35,15 @@ def other_fold(number: int, chain: Linkage, scratch: Array) -> None:
     """
     state = first_state(number)
     for joint in range(chain.offsets.shape[0]):
+        own = has_limit(joint, scratch)
         for axis in range(3):
             low, high = chain.low[joint, axis], chain.high[joint, axis]
             angle = scratch[joint, HOME + axis]
             state = next_state(state)
             limited = high < inf
-            if number == 1:
+            if own and 0 < number < 3:
+                angle = -angle if number == 1 else 0.0
+            elif number == 1:
                 angle = low + high - angle if limited else angle
             elif number == 2:
                 angle = 0.5 * (low + high) if limited else angle
