@@ -81,8 +81,8 @@ def test_from_pose_aims_from_the_base_and_the_root_of_the_pose() -> None:
 @pytest.mark.parametrize(
     ("pose", "reference", "message"),
     [
-        (np.zeros((4, 2)), 1, "pose: expected finite angles (n, 3), found shape (4, 2)"),
-        (np.full((4, 3), np.nan), 1, "pose: expected finite angles (n, 3), found shape (4, 3)"),
+        (np.zeros((4, 2)), 1, "pose: expected shape (m, 3), found (4, 2)"),
+        (np.full((4, 3), np.nan), 1, "pose: every number must be finite"),
         (np.zeros((4, 3)), 0, "bend_reference must be 1 to 3 for a pose of 4 joints, not 0"),
         (np.zeros((4, 3)), 4, "bend_reference must be 1 to 3 for a pose of 4 joints, not 4"),
     ],
