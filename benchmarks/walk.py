@@ -25,26 +25,27 @@ from limbik.plugins.formats.bvh import read_bvh
 BENT = 0.05  # frames count for the swivel where the knee is so far off the line [leg lengths]
 STILL = 0.1  # a foot is planted below this speed [leg lengths/s]
 REGISTRY = Registry(third_party=False)
-# Poles of the left leg, in the pelvis at rest; the right leg has their images. The last is the one
-# that fits the left leg best in hindsight, those before fit both legs.
+# Poles of the left leg, in the pelvis at rest; the right leg has their images. The carried one fits
+# the left leg best in hindsight, the other fits both legs.
+AHEAD = "solver: 2d, frame: Hips, pole: {position: [SIDE9, -5, 100], rotor: ROTOR}"
+CARRIED = "solver: 2d, frame: Hips, pole: {position: [SIDE31, 82, 48], rotor: {twist: 1, tilt: 1}}"
+EXACT = "{initial_bend: two-bone}"
+SOFT = "{initial_bend: two-bone, soft_zone: 0.003, tolerance: 0.03}"  # 0.2 % of the leg
 KINDS = {
-    "3d, manual": "",
-    "2d, pole in the pelvis": "solver: 2d, frame: Hips, pole: {position: [SIDE9, -5, 100]}",
-    "2d, rotor that follows hip and foot": (
-        "solver: 2d, frame: Hips, pole: {position: [SIDE9, -5, 100], rotor: leg}"
-    ),
-    "2d, rotor that tilts with the foot": (
-        "solver: 2d, frame: Hips, pole: {position: [SIDE31, 82, 48], rotor: {twist: 1, tilt: 1}}"
-    ),
+    "3d, manual": ("solver: 3d", EXACT),
+    "2d, pole in the pelvis": (AHEAD.replace("ROTOR", "null"), EXACT),
+    "2d, rotor that follows hip and foot": (AHEAD.replace("ROTOR", "leg"), EXACT),
+    "2d, rotor that tilts with the foot": (CARRIED, EXACT),
+    "2d, the same with a soft zone": (CARRIED, SOFT),
 }
 
 
-def scene_of(clip: Path, frames: tuple[int, int], more: str) -> BodyScene:
+def scene_of(clip: Path, frames: tuple[int, int], solver: str, options: str) -> BodyScene:
     """Both legs, each ankle along its path in the clip."""
     text = f"limbik: 1\nskeleton: {{bvh: '{clip}', frames: [{frames[0]}, {frames[1]}]}}\nchains:\n"
     for name, side in (("Left", ""), ("Right", "-")):
-        text += f"- {{name: {name}, base: {name}UpLeg, end: {name}Foot, "
-        text += f"options: {{initial_bend: two-bone}}, {more.replace('SIDE', side)}}}\n"
+        text += f"- {{name: {name}, base: {name}UpLeg, end: {name}Foot, options: {options}, "
+        text += f"{solver.replace('SIDE', side)}}}\n"
     return body_from(read_yaml(text, "walk.yaml"), Path(), REGISTRY)
 
 
@@ -100,8 +101,8 @@ def main() -> None:
     parser.add_argument("frames", type=int, nargs="*")
     given = parser.parse_args()
     first, last = given.frames or (1, len(read_bvh(given.clip).frames) - 1)
-    for kind, more in KINDS.items():
-        scene = scene_of(given.clip, (first, last), more)
+    for kind, solved in KINDS.items():
+        scene = scene_of(given.clip, (first, last), *solved)
         bake = bake_body(scene, REGISTRY)
         times = []
         for _ in range(7):

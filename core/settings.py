@@ -242,7 +242,6 @@ ONLY_3D: Final = (
     "bend_smoothing",
     "clamp",
     "start",
-    "soft_zone",
     "end_orientation",
     "choose",
     "stiffness",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from limbik.core.chain import Chain, Joint
 from limbik.core.solution import Solution, Status
 from limbik.core.solver import Solver
+from limbik.core.solver2d import Solver2D
 
 Array = NDArray[np.float64]
 RATE = 60.0
@@ -88,6 +89,21 @@ def test_the_end_follows_the_exponential_law(distance: float, zone: float) -> No
 
     inner = max(law, 0.04)  # bones of 0.52 and 0.48 come no nearer
     assert np.linalg.norm(solution.positions[-1]) == pytest.approx(inner, abs=1e-7)
+
+
+@given(distance=st.floats(0.1, 3.0), zone=st.floats(0.001, 0.5), bend=st.sampled_from(BENDS))
+def test_in_2d_the_end_follows_the_same_law(distance: float, zone: float, bend: str) -> None:
+    solver = Solver2D(arm(1.0), pole=(0.3, 2.0, 0.1), initial_bend=bend, soft_zone=round(zone, 6))
+    zone = solver.settings.soft_zone
+    start = 1.0 - zone
+    law = distance if distance <= start else 1.0 - zone * np.exp(-(distance - start) / zone)
+    goal = radial(np.array([distance]))[0]
+
+    solution = solver.altered(max_iterations=200, tolerance=1e-9, smoothing=1.0).solve(goal)
+
+    assert np.linalg.norm(solution.positions[-1]) == pytest.approx(law, abs=1e-5)
+    assert np.cross(solution.positions[-1], goal) == pytest.approx(np.zeros(3), abs=1e-5)
+    assert solution.distance == pytest.approx(abs(distance - law), abs=1e-5)
 
 
 def test_the_zone_is_a_share_of_the_reach_whatever_the_unit() -> None:

@@ -296,7 +296,7 @@ def test_a_strategy_that_is_unknown_is_named() -> None:
     [
         ({"bend_vector": "auto"}, "bend_vector: belongs to the 3D solver; the pole gives the bend"),
         ({"off_axis": True}, "off_axis: belongs to the 3D solver"),
-        ({"soft_zone": 0.1}, "soft_zone: belongs to the 3D solver"),
+        ({"start": "current"}, "start: belongs to the 3D solver"),
         ({"finish": "other"}, "finish: belongs to the 3D solver; in 2D it can only be none"),
         ({"root_control": "none"}, "root_control: belongs to the 3D solver"),
         ({"max_iterations": -2}, "max_iterations: must be -1 or more in 2D, not -2"),

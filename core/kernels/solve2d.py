@@ -45,6 +45,7 @@ from limbik.core.kernels.rotation import (
     transposed,
     vector,
 )
+from limbik.core.kernels.soft import soft_distance
 from limbik.core.kernels.solve3d import (
     BEND,
     BEND_ANGLE,
@@ -157,10 +158,11 @@ def _solve(
         stages = _aim(frame, body, options, planar, fk, memory, pose, flat, trace, stages)
     find_planar_joints(pose, flat)
     if options.max_iterations > -1 and not options.full_fk:
-        if bend_planar(distance, body, options, planar, plugs, fk, pose, flat):
+        near = soft_distance(distance, options.root_to_end, options.soft_zone)
+        if bend_planar(near, body, options, planar, plugs, fk, pose, flat):
             stages = _record(stages, frame, body, memory, pose, flat, trace)
             iterations, stages = _rounds(
-                distance, frame, body, options, planar, memory, pose, flat, trace, stages
+                near, frame, body, options, planar, memory, pose, flat, trace, stages
             )
         else:
             failed = FAILED
