@@ -117,7 +117,7 @@ def test_going_to_2d_and_back_keeps_the_options_of_3d(arm: Setup, opened: Opened
     flat = arm.with_strategy("solver", {"use": "2d"})
     assert flat.in_plane
     assert flat.scene.pole == flat.pole
-    assert {control.path[0] for control in flat.options}.isdisjoint({"clamp", "soft_zone"})
+    assert {control.path[0] for control in flat.options}.isdisjoint({"clamp", "start"})
     back = flat.with_strategy("solver", {"use": "3d"})
     np.testing.assert_array_equal(back.solve(goal).angles, arm.solve(goal).angles)
 
