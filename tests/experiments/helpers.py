@@ -60,8 +60,8 @@ batch: 40
 engine: serial
 output: run
 """
-MANY = EXPERIMENT.replace("count: 100", "count: 4000").replace("batch: 40", "batch: 400")
-"""With many parts, so that there is something to hit: 4 x 10 of solves and one, 8 of paths."""
+MANY = EXPERIMENT.replace("count: 100", "count: 4000").replace("batch: 40", "batch: 100")
+"""With many parts, so that there is something to hit: 4 x 40 of solves and one, 8 of paths."""
 EXACT = {
     SOLVES: ("trial", "goal", "x", "y", "z", "status", "iterations", "distance"),
     PATHS: ("trial", "goals", "reached", "distance_p95", "iterations"),
