@@ -390,9 +390,7 @@ def _joined(settings: Settings, options: dict[str, Any]) -> Settings:
     """Return settings with single ones replaced, checked again."""
     if not options:
         return settings
-    from limbik.core.validation import read_model
-
-    return read_model(Settings, {**settings.model_dump(exclude_unset=True), **options})
+    return Settings(**{**settings.model_dump(exclude_unset=True), **options})
 
 
 _LATE_STAGES = ("finish", "choice")

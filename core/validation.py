@@ -8,7 +8,7 @@ out: the missing key behind a mistyped one, the other branches of a union.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -18,7 +18,6 @@ from limbik.core.wording import Wording, found_words, near_match, refusal
 from limbik.core.yamlfile import Document, KeyPath
 
 _MOST_LISTED = 12
-M = TypeVar("M", bound=BaseModel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,18 +33,6 @@ class _Finding:
     @property
     def code(self) -> str:
         return self.wording.code
-
-
-def read_model(model: type[M], values: Mapping[str, Any]) -> M:
-    """Check values a program gives by a model.
-
-    Raises:
-        InputError: With a fault for each value that is refused.
-    """
-    try:
-        return model.model_validate(values)
-    except ValidationError as error:
-        raise model_error(error, model, values) from None
 
 
 def model_error(

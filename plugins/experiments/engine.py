@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from limbik.core.errors import EnvironmentProblem, LimbikError
 from limbik.plugins.experiments import guard
-from limbik.plugins.experiments.batch import Job, run_batch
+from limbik.plugins.experiments.batch import Job, Part, run_batch
 from limbik.plugins.experiments.folder import Folder
 from limbik.plugins.experiments.identity import versions
 from limbik.plugins.experiments.model import DASK, LOCAL, SERIAL
@@ -51,28 +51,26 @@ def run_jobs(
             the folder is full or not writable.
     """
     if engine == SERIAL:
-        yield from (_keep(job, folder) for job in jobs)
+        yield from (_kept(run_batch(job), folder) for job in jobs)
     elif engine == LOCAL:
         # A worker killed while it sends leaves the others waiting forever, so it keeps its part
         # itself and sends next to nothing.
-        task = partial(_keep_guarded, folder=folder, parent=os.getpid())
+        task = partial(_run_guarded, folder=folder, parent=os.getpid())
         yield from _parallel(task, jobs, workers or os.cpu_count() or 1, backend="loky")
     else:
         with _cluster(engine.removeprefix(DASK), here) as count:
             for part in _parallel(run_batch, jobs, count):
-                folder.keep(part.batch, part.content)
-                yield Done(part.batch, part.failed)
+                yield _kept(part, folder)
 
 
-def _keep(job: Job, folder: Folder) -> Done:
-    part = run_batch(job)
+def _kept(part: Part, folder: Folder) -> Done:
     folder.keep(part.batch, part.content)
     return Done(part.batch, part.failed)
 
 
-def _keep_guarded(job: Job, folder: Folder, parent: int) -> Done:
+def _run_guarded(job: Job, folder: Folder, parent: int) -> Done:
     guard.watch(parent)
-    return _keep(job, folder)
+    return _kept(run_batch(job), folder)
 
 
 def _parallel(

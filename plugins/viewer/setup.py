@@ -25,7 +25,6 @@ from limbik.core.solver import Solver
 from limbik.core.solver2d import Solver2D
 from limbik.core.solving import single_solver
 from limbik.core.strategy import layout
-from limbik.core.validation import read_model
 from limbik.core.whole import OWN_SOLVERS
 from limbik.plugins.viewer.controls import Control, controls
 
@@ -205,7 +204,7 @@ class Setup:
             LimbikError: The value is refused.
         """
         options = self.settings.model_dump(exclude_unset=True)
-        return self._changed(settings=read_model(Settings, put(options, path, value)))
+        return self._changed(settings=Settings(**put(options, path, value)))
 
     def with_strategy(self, slot: str, choice: Choice) -> "Setup":
         """Return the setup with another strategy, `{use: name, ...}`, in a slot or as the solver.
@@ -225,9 +224,8 @@ class Setup:
 
     def with_rotor(self, rotor: str | dict[str, Any] | None) -> "Setup":
         """Return the setup with another pole rotor: a preset's name, a mapping, or None."""
-        given = read_model(PoleRotor, rotor) if isinstance(rotor, dict) else rotor
-        values = {"position": self.pole.position, "rotor": given}
-        return self._changed(pole=read_model(Pole, values))
+        given: Any = PoleRotor(**rotor) if isinstance(rotor, dict) else rotor
+        return self._changed(pole=Pole(position=self.pole.position, rotor=given))
 
     def with_bind(self, bind: bool) -> "Setup":
         """Return the setup whose 2D solver leaves the rest pose where it is, or not."""
